@@ -1,0 +1,74 @@
+//! Expressions evaluated on concrete states, as the encoder sees them: a state is a row of integers (Booleans are
+//! 0 and 1, enumeration values their position).
+
+use hyperplan_problem::{Comparison, Expr, Leaf, System, Type, Value};
+
+/// A value as an integer.
+pub(crate) fn code(value: Value) -> i64 {
+    match value {
+        Value::Bool(b) => i64::from(b),
+        Value::Int(i) => i,
+        Value::Enum(i) => i64::from(i),
+    }
+}
+
+/// The value of a variable of this type with that code.
+pub(crate) fn decode(ty: &Type, code: i64) -> Value {
+    match ty {
+        Type::Bool => Value::Bool(code != 0),
+        Type::Range { .. } => Value::Int(code),
+        Type::Enum(_) => Value::Enum(u32::try_from(code).unwrap_or(0)),
+    }
+}
+
+/// The least and greatest code of a type.
+pub(crate) fn bounds(ty: &Type) -> (i64, i64) {
+    match ty {
+        Type::Bool => (0, 1),
+        Type::Range { lo, hi } => (*lo, *hi),
+        Type::Enum(values) => (0, values.len() as i64 - 1),
+    }
+}
+
+/// The value of an expression, given that of each leaf.
+pub(crate) fn eval<L>(expr: &Expr<L>, leaf: &mut impl FnMut(&L) -> i64) -> i64 {
+    match expr {
+        Expr::Const(value) => code(*value),
+        Expr::Leaf(l) => leaf(l),
+        Expr::Not(a) => 1 - eval(a, leaf),
+        Expr::And(es) => i64::from(es.iter().all(|e| eval(e, leaf) != 0)),
+        Expr::Or(es) => i64::from(es.iter().any(|e| eval(e, leaf) != 0)),
+        Expr::Iff(a, b) => i64::from(eval(a, leaf) == eval(b, leaf)),
+        Expr::Compare(op, a, b) => {
+            let (a, b) = (eval(a, leaf), eval(b, leaf));
+            i64::from(match op {
+                Comparison::Eq => a == b,
+                Comparison::Lt => a < b,
+                Comparison::Le => a <= b,
+            })
+        }
+        Expr::Add(es) => es.iter().map(|e| eval(e, leaf)).sum(),
+        Expr::Mul(c, a) => c * eval(a, leaf),
+        Expr::Div(a, c) => eval(a, leaf).div_euclid(*c),
+        Expr::Mod(a, c) => eval(a, leaf).rem_euclid(*c),
+        Expr::If(c, a, b) => {
+            if eval(c, leaf) != 0 {
+                eval(a, leaf)
+            } else {
+                eval(b, leaf)
+            }
+        }
+        Expr::Member(es, set) => {
+            let tuple: Vec<i64> = es.iter().map(|e| eval(e, leaf)).collect();
+            i64::from(set.contains(&tuple))
+        }
+    }
+}
+
+/// The value of an expression over one system in a state.
+pub(crate) fn eval_in(system: &System, expr: &Expr<Leaf>, state: &[i64]) -> i64 {
+    eval(expr, &mut |leaf| match *leaf {
+        Leaf::Var(v) => state[usize::from(v)],
+        Leaf::Label(l) => eval_in(system, &system.labels[l].expr, state),
+    })
+}

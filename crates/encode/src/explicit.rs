@@ -1,0 +1,461 @@
+//! Paths whose states are enumerated (`--states onehot`): a Boolean for each state that can matter at a time, and
+//! one for each letter (action and outcome number) of a step.
+
+use crate::graph::{Graph, Letter, StateIx};
+use crate::inputs::{Inputs, Move, Start};
+use crate::reach::Layers;
+use hyperplan_problem::{ActionId, PathId, Problem, System, Value};
+use hyperplan_smt::{Model, Script, Sort, Term, Terms};
+use rustc_hash::FxHashMap;
+use std::rc::Rc;
+
+/// A path whose every state and letter is known.
+#[derive(Clone, Debug)]
+pub struct FixedPath {
+    pub(crate) graph: Rc<Graph>,
+    pub(crate) states: Vec<StateIx>,
+    pub(crate) letters: Vec<Letter>,
+    pub(crate) actions: Vec<ActionId>,
+}
+
+impl FixedPath {
+    /// From the states and letters of a path.
+    pub(crate) fn new(graph: Rc<Graph>, states: Vec<StateIx>, letters: Vec<Letter>) -> FixedPath {
+        let actions = letters.iter().map(|&l| graph.letters[l as usize].0).collect();
+        FixedPath { graph, states, letters, actions }
+    }
+}
+
+/// The states possible at one time, with the terms that say which it is.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct Layer {
+    /// Sorted.
+    pub(crate) states: Vec<StateIx>,
+    pub(crate) terms: Vec<Term>,
+}
+
+impl Layer {
+    /// Whether the state is one of those for which `holds`.
+    pub(crate) fn any(&self, terms: &mut Terms, mut holds: impl FnMut(StateIx) -> bool) -> Term {
+        let (mut yes, mut no) = (Vec::new(), Vec::new());
+        for (&state, &term) in self.states.iter().zip(&self.terms) {
+            if holds(state) { yes.push(term) } else { no.push(term) }
+        }
+        // Exactly one of the terms is true, so the shorter side will do.
+        if no.is_empty() {
+            Term::TRUE
+        } else if yes.len() <= no.len() {
+            terms.or(&yes)
+        } else {
+            !terms.or(&no)
+        }
+    }
+
+    /// Whether it is this state.
+    pub(crate) fn is(&self, state: StateIx) -> Term {
+        self.states.binary_search(&state).map_or(Term::FALSE, |at| self.terms[at])
+    }
+}
+
+/// The letters possible at one step, with the terms that say which it is.
+#[derive(Debug, Default)]
+pub(crate) struct Step {
+    /// Empty where only the action is known.
+    pub(crate) letters: Vec<(Letter, Term)>,
+    pub(crate) actions: Vec<(ActionId, Term)>,
+}
+
+impl Step {
+    fn new(terms: &mut Terms, graph: &Graph, letters: Vec<(Letter, Term)>) -> Step {
+        let action = |letter: Letter| graph.letters[letter as usize].0;
+        let actions = letters
+            .chunk_by(|a, b| action(a.0) == action(b.0))
+            .map(|same| {
+                let any: Vec<Term> = same.iter().map(|l| l.1).collect();
+                (action(same[0].0), terms.or(&any))
+            })
+            .collect();
+        Step { letters, actions }
+    }
+
+    /// Whether the action is this one.
+    pub(crate) fn took(&self, action: ActionId) -> Term {
+        self.actions.iter().find(|a| a.0 == action).map_or(Term::FALSE, |a| a.1)
+    }
+}
+
+/// The terms of a path: `layers[t]` its state at time t, `steps[t]` what leads from there to t + 1.
+#[derive(Clone, Debug)]
+pub(crate) struct ExplicitPath {
+    pub(crate) graph: Rc<Graph>,
+    pub(crate) layers: Vec<Rc<Layer>>,
+    pub(crate) steps: Vec<Rc<Step>>,
+}
+
+/// Names the symbols of one path.
+pub(crate) struct Names<'a> {
+    pub(crate) problem: &'a Problem,
+    pub(crate) system: &'a System,
+    /// The path variable's name, with a number for copies.
+    pub(crate) path: String,
+}
+
+impl Names<'_> {
+    /// `p.at.3.4`: path p is where the first variable is 3 and the second 4.
+    fn state(&self, graph: &Graph, state: StateIx) -> String {
+        let mut name = format!("{}.at", self.path);
+        for (value, var) in graph.state(self.system, state).iter().zip(&self.system.vars) {
+            match (value, &var.ty) {
+                (Value::Enum(at), hyperplan_problem::Type::Enum(values)) => {
+                    name.push_str(&format!(".{}", values[*at as usize]));
+                }
+                (Value::Bool(b), _) => name.push_str(&format!(".{b}")),
+                (Value::Int(i), _) => name.push_str(&format!(".{i}")),
+                (Value::Enum(at), _) => name.push_str(&format!(".{at}")),
+            }
+        }
+        name
+    }
+
+    /// `p.up`, or `p.up/1` for the second outcome of `up`.
+    fn letter(&self, graph: &Graph, letter: Letter) -> String {
+        let (action, number) = graph.letters[letter as usize];
+        let action = &self.problem.actions[action];
+        match number {
+            0 => format!("{}.{action}", self.path),
+            _ => format!("{}.{action}/{number}", self.path),
+        }
+    }
+}
+
+/// Exactly one of the terms is true; linear, by halves.
+pub(crate) fn exactly_one(terms: &mut Terms, all: &[Term]) -> Term {
+    let (any, at_most_one) = one_of(terms, all);
+    terms.and2(any, at_most_one)
+}
+
+fn one_of(terms: &mut Terms, all: &[Term]) -> (Term, Term) {
+    match all {
+        [] => (Term::FALSE, Term::TRUE),
+        [only] => (*only, Term::TRUE),
+        _ => {
+            let (left, right) = all.split_at(all.len() / 2);
+            let (any_left, one_left) = one_of(terms, left);
+            let (any_right, one_right) = one_of(terms, right);
+            let both = terms.and2(any_left, any_right);
+            (terms.or2(any_left, any_right), terms.and(&[one_left, one_right, !both]))
+        }
+    }
+}
+
+/// The letters that lead from one layer to the next, sorted.
+fn letters_between(graph: &Graph, layers: &Layers, time: usize) -> Vec<Letter> {
+    let mut letters: Vec<Letter> = layers.at[time]
+        .iter()
+        .flat_map(|&state| graph.successors(state))
+        .filter(|t| layers.contains(time + 1, t.1))
+        .map(|t| t.0)
+        .collect();
+    letters.sort_unstable();
+    letters.dedup();
+    letters
+}
+
+/// Symbols for a set of alternatives; the only one there is needs none.
+fn symbols<T: Copy>(
+    terms: &mut Terms,
+    items: &[T],
+    bound: bool,
+    time: usize,
+    name: impl Fn(T) -> String,
+) -> Vec<Term> {
+    if items.len() == 1 {
+        return vec![Term::TRUE];
+    }
+    items
+        .iter()
+        .map(|&item| {
+            let stem = terms.stem(&name(item));
+            let time = Some(time as u32);
+            if bound {
+                terms.bound_symbol(stem, time, Sort::Bool)
+            } else {
+                terms.symbol(stem, time, Sort::Bool)
+            }
+        })
+        .collect()
+}
+
+impl ExplicitPath {
+    /// A path that the solver chooses: a symbol for each state of the layers and each letter, and clauses that make
+    /// them a path. With exactly one state at time 0 and exactly one letter a step, both directions of the
+    /// transition leave exactly one state at every time.
+    pub(crate) fn declare(
+        script: &mut Script,
+        names: &Names<'_>,
+        graph: &Rc<Graph>,
+        layers: &Layers,
+    ) -> Self {
+        script.section(format!("path {}", names.path));
+        if layers.at.iter().any(Vec::is_empty) {
+            script.assert(Term::FALSE);
+        }
+        let mut path = ExplicitPath { graph: graph.clone(), layers: Vec::new(), steps: Vec::new() };
+        for (time, states) in layers.at.iter().enumerate() {
+            let terms = symbols(&mut script.terms, states, false, time, |s| names.state(graph, s));
+            path.layers.push(Rc::new(Layer { states: states.clone(), terms }));
+        }
+        let start = exactly_one(&mut script.terms, &path.layers[0].terms);
+        script.assert(start);
+        for time in 0..path.layers.len() - 1 {
+            let letters = letters_between(graph, layers, time);
+            let terms = symbols(&mut script.terms, &letters, false, time + 1, |l| names.letter(graph, l));
+            let one = exactly_one(&mut script.terms, &terms);
+            script.assert(one);
+            let letters = letters.into_iter().zip(terms).collect();
+            let step = Step::new(&mut script.terms, graph, letters);
+            transition(script, graph, &path.layers[time], &step, &path.layers[time + 1]);
+            path.steps.push(Rc::new(step));
+        }
+        path
+    }
+
+    /// A path whose initial state and letters are bound variables and whose other states are defined by them: the
+    /// path, the variables, and the condition that they are a path.
+    pub(crate) fn bind(
+        terms: &mut Terms,
+        names: &Names<'_>,
+        graph: &Rc<Graph>,
+        layers: &Layers,
+    ) -> (Self, Vec<Term>, Term) {
+        let mut guards = Vec::new();
+        let mut bound = Vec::new();
+        let mut choice = |terms: &mut Terms, variables: &[Term]| {
+            bound.extend(variables.iter().copied().filter(|t| !t.is_const()));
+            let one = exactly_one(terms, variables);
+            guards.push(one);
+        };
+        let start = symbols(terms, &layers.at[0], true, 0, |s| names.state(graph, s));
+        choice(terms, &start);
+        let mut path = ExplicitPath { graph: graph.clone(), layers: Vec::new(), steps: Vec::new() };
+        path.layers.push(Rc::new(Layer { states: layers.at[0].clone(), terms: start }));
+        for time in 0..layers.at.len() - 1 {
+            let letters = letters_between(graph, layers, time);
+            let variables = symbols(terms, &letters, true, time + 1, |l| names.letter(graph, l));
+            choice(terms, &variables);
+            let step = Step::new(terms, graph, letters.into_iter().zip(variables).collect());
+            let mut next = Vec::new();
+            let layer = path.layers[time].clone();
+            for (&state, &here) in layer.states.iter().zip(&layer.terms) {
+                for &(letter, term) in &step.letters {
+                    if let Some(to) =
+                        graph.successor(state, letter).filter(|&to| layers.contains(time + 1, to))
+                    {
+                        next.push((to, terms.and2(here, term)));
+                    }
+                }
+            }
+            path.layers.push(Rc::new(gather(terms, next)));
+            path.steps.push(Rc::new(step));
+        }
+        let arrived = path.layers.last().map_or(Vec::new(), |l| l.terms.clone());
+        guards.push(terms.or(&arrived));
+        let guard = terms.and(&guards);
+        (path, bound, guard)
+    }
+
+    /// A known path, as constants.
+    pub(crate) fn fix(fixed: &FixedPath) -> Self {
+        let layer = |&state: &StateIx| Rc::new(Layer { states: vec![state], terms: vec![Term::TRUE] });
+        let step = |(&letter, &action): (&Letter, &ActionId)| {
+            Rc::new(Step { letters: vec![(letter, Term::TRUE)], actions: vec![(action, Term::TRUE)] })
+        };
+        ExplicitPath {
+            graph: fixed.graph.clone(),
+            layers: fixed.states.iter().map(layer).collect(),
+            steps: fixed.letters.iter().zip(&fixed.actions).map(step).collect(),
+        }
+    }
+
+    /// The symbols that a model must give values to, so that [`ExplicitPath::decode`] can read the path.
+    pub(crate) fn symbols(&self) -> Vec<Term> {
+        let letters = self.steps.iter().flat_map(|s| s.letters.iter().map(|l| l.1));
+        self.layers[0].terms.iter().copied().chain(letters).filter(|t| !t.is_const()).collect()
+    }
+
+    /// The path that a model describes, by replaying its letters from its initial state; `None` if it is none.
+    pub(crate) fn decode(&self, model: &Model) -> Option<FixedPath> {
+        let first = &self.layers[0];
+        let start = first.terms.iter().position(|&t| t == Term::TRUE || model.is_true(t))?;
+        let mut states = vec![first.states[start]];
+        let mut letters = Vec::with_capacity(self.steps.len());
+        for step in &self.steps {
+            let &(letter, _) = step.letters.iter().find(|l| l.1 == Term::TRUE || model.is_true(l.1))?;
+            states.push(self.graph.successor(*states.last()?, letter)?);
+            letters.push(letter);
+        }
+        Some(FixedPath::new(self.graph.clone(), states, letters))
+    }
+}
+
+/// The clauses of one step, both ways.
+fn transition(script: &mut Script, graph: &Graph, from: &Layer, step: &Step, to: &Layer) {
+    let mut before: FxHashMap<(StateIx, Letter), Vec<Term>> = FxHashMap::default();
+    for (&state, &here) in from.states.iter().zip(&from.terms) {
+        for &(letter, term) in &step.letters {
+            match graph.successor(state, letter).map(|next| (next, to.is(next))) {
+                Some((next, there)) if there != Term::FALSE => {
+                    script.clause(&[!here, !term, there]);
+                    before.entry((next, letter)).or_default().push(here);
+                }
+                _ => script.clause(&[!here, !term]),
+            }
+        }
+    }
+    let mut clause = Vec::new();
+    for (&state, &there) in to.states.iter().zip(&to.terms) {
+        for &(letter, term) in &step.letters {
+            clause.clear();
+            clause.extend([!there, !term]);
+            clause.extend(before.get(&(state, letter)).into_iter().flatten());
+            script.clause(&clause);
+        }
+    }
+}
+
+/// A layer from (state, condition) pairs.
+fn gather(terms: &mut Terms, mut pairs: Vec<(StateIx, Term)>) -> Layer {
+    pairs.retain(|p| p.1 != Term::FALSE);
+    pairs.sort_unstable();
+    let mut layer = Layer { states: Vec::new(), terms: Vec::new() };
+    for same in pairs.chunk_by(|a, b| a.0 == b.0) {
+        let when: Vec<Term> = same.iter().map(|p| p.1).collect();
+        layer.states.push(same[0].0);
+        layer.terms.push(terms.or(&when));
+    }
+    layer
+}
+
+/// Builds instances of a universally quantified path, sharing the steps that instances have in common.
+#[derive(Default)]
+pub(crate) struct Instances {
+    /// The layer that follows a layer (by address) under a move at a time. The layers are kept alive here, so that
+    /// addresses stay unique.
+    next: FxHashMap<(usize, Move, usize), Shared>,
+}
+
+/// A layer, what follows it, and the step between.
+type Shared = (Rc<Layer>, Rc<Layer>, Rc<Step>);
+
+impl Instances {
+    /// The path that starts and moves as `inputs` say, and the condition that it is a path through `layers`.
+    /// `env` gives the paths that the inputs refer to.
+    pub(crate) fn build(
+        &mut self,
+        terms: &mut Terms,
+        graph: &Rc<Graph>,
+        layers: &Layers,
+        inputs: &Inputs<StateIx>,
+        env: &[Option<&ExplicitPath>],
+    ) -> (ExplicitPath, Term) {
+        let first = match inputs.start {
+            Start::Same(other) => at(env, other).layers[0].clone(),
+            Start::State(state) => only_start(env, graph, state).unwrap_or_else(|| {
+                let possible = layers.contains(0, state);
+                let (states, terms) =
+                    if possible { (vec![state], vec![Term::TRUE]) } else { (vec![], vec![]) };
+                Rc::new(Layer { states, terms })
+            }),
+        };
+        let mut path = ExplicitPath { graph: graph.clone(), layers: vec![first], steps: Vec::new() };
+        for (time, &movement) in inputs.moves.iter().enumerate() {
+            let here = path.layers[time].clone();
+            let (next, step) = self.step(terms, graph, layers, &here, movement, time, env);
+            path.layers.push(next);
+            path.steps.push(step);
+        }
+        let arrived: Vec<Term> = path.layers.last().map_or(Vec::new(), |l| l.terms.clone());
+        let guard = terms.or(&arrived);
+        (path, guard)
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn step(
+        &mut self,
+        terms: &mut Terms,
+        graph: &Graph,
+        layers: &Layers,
+        here: &Rc<Layer>,
+        movement: Move,
+        time: usize,
+        env: &[Option<&ExplicitPath>],
+    ) -> (Rc<Layer>, Rc<Step>) {
+        let key = (Rc::as_ptr(here) as usize, movement, time);
+        if let Some((_, next, step)) = self.next.get(&key) {
+            return (next.clone(), step.clone());
+        }
+        let (next, step) = match movement {
+            Move::Same(other) => {
+                let other = at(env, other);
+                let step = other.steps[time].clone();
+                if Rc::ptr_eq(here, &other.layers[time]) {
+                    // The same state and the same letter: the same path up to here and one step on.
+                    (other.layers[time + 1].clone(), step)
+                } else {
+                    let next =
+                        self.follow(terms, here, &step.letters, layers, time, |s, l| graph.successor(s, l));
+                    (next, step)
+                }
+            }
+            Move::SameAction(other, number) => {
+                let step = &at(env, other).steps[time];
+                let next =
+                    self.follow(terms, here, &step.actions, layers, time, |s, a| graph.outcome(s, a, number));
+                (next, Rc::new(Step { letters: Vec::new(), actions: step.actions.clone() }))
+            }
+            Move::Act(action, number) => {
+                let actions = vec![(action, Term::TRUE)];
+                let next =
+                    self.follow(terms, here, &actions, layers, time, |s, a| graph.outcome(s, a, number));
+                (next, Rc::new(Step { letters: Vec::new(), actions }))
+            }
+        };
+        self.next.insert(key, (here.clone(), next.clone(), step.clone()));
+        (next, step)
+    }
+
+    fn follow<T: Copy>(
+        &self,
+        terms: &mut Terms,
+        here: &Layer,
+        choices: &[(T, Term)],
+        layers: &Layers,
+        time: usize,
+        successor: impl Fn(StateIx, T) -> Option<StateIx>,
+    ) -> Rc<Layer> {
+        let mut next = Vec::new();
+        for (&state, &when) in here.states.iter().zip(&here.terms) {
+            for &(choice, term) in choices {
+                if let Some(to) = successor(state, choice).filter(|&to| layers.contains(time + 1, to)) {
+                    next.push((to, terms.and2(when, term)));
+                }
+            }
+        }
+        Rc::new(gather(terms, next))
+    }
+}
+
+/// The path that inputs refer to: the planner names only paths that it has.
+fn at<'a>(env: &[Option<&'a ExplicitPath>], path: PathId) -> &'a ExplicitPath {
+    env[usize::from(path)].expect("inputs refer to paths quantified before")
+}
+
+/// The first layer of a path that starts in this state and nowhere else, to share what follows.
+fn only_start(env: &[Option<&ExplicitPath>], graph: &Rc<Graph>, state: StateIx) -> Option<Rc<Layer>> {
+    env.iter()
+        .flatten()
+        .filter(|path| Rc::ptr_eq(&path.graph, graph))
+        .map(|path| &path.layers[0])
+        .find(|layer| layer.states == [state] && layer.terms == [Term::TRUE])
+        .cloned()
+}

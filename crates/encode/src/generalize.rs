@@ -1,0 +1,71 @@
+//! From a counterexample to the instance that it stands for.
+
+use crate::explicit::FixedPath;
+use crate::inputs::{Inputs, Move, Start};
+use crate::path::{Instance, Known};
+use crate::symbolic::FixedRows;
+use crate::{Encoder, Row};
+use hyperplan_problem::PathId;
+use std::rc::Rc;
+
+/// The inputs of a path, in terms of paths before it where the objective compares them and they agree. Under the
+/// other paths given, the inputs describe exactly the counterexample.
+pub(crate) fn generalize(
+    encoder: &Encoder<'_>,
+    path: PathId,
+    counterexample: &Known,
+    before: &[Option<Known>],
+) -> Instance {
+    let tied = encoder.tied_before(path);
+    let alike = encoder.compared_before(path);
+    match counterexample {
+        Known::Explicit(own) => {
+            let other = |p: PathId| match before[usize::from(p)].as_ref() {
+                Some(Known::Explicit(other)) => Some((p, other)),
+                _ => None,
+            };
+            let tied: Vec<(PathId, &FixedPath)> = tied.into_iter().filter_map(other).collect();
+            let start = alike
+                .into_iter()
+                .filter_map(other)
+                .find(|(_, o)| Rc::ptr_eq(&o.graph, &own.graph) && o.states[0] == own.states[0])
+                .map_or(Start::State(own.states[0]), |(p, _)| Start::Same(p));
+            let moves = (0..own.letters.len()).map(|time| explicit_move(own, &tied, time)).collect();
+            Instance::Explicit(Inputs { start, moves })
+        }
+        Known::Symbolic(own) => {
+            let other = |p: PathId| match before[usize::from(p)].as_ref() {
+                Some(Known::Symbolic(other)) => Some((p, other)),
+                _ => None,
+            };
+            let tied: Vec<(PathId, &FixedRows)> = tied.into_iter().filter_map(other).collect();
+            let start: Start<Row> = alike
+                .into_iter()
+                .filter_map(other)
+                .find(|(_, o)| o.rows[0] == own.rows[0])
+                .map_or_else(|| Start::State(own.rows[0].clone()), |(p, _)| Start::Same(p));
+            let moves = (0..own.actions.len())
+                .map(|time| {
+                    let (action, number) = (own.actions[time], own.numbers[time]);
+                    match tied.iter().find(|(_, o)| o.actions.get(time) == Some(&action)) {
+                        Some(&(p, _)) => Move::SameAction(p, number),
+                        None => Move::Act(action, number),
+                    }
+                })
+                .collect();
+            Instance::Symbolic(Inputs { start, moves })
+        }
+    }
+}
+
+fn explicit_move(own: &FixedPath, tied: &[(PathId, &FixedPath)], time: usize) -> Move {
+    let letter = own.letters[time];
+    let (action, number) = own.graph.letters[letter as usize];
+    let same_letter =
+        |o: &FixedPath| Rc::ptr_eq(&o.graph, &own.graph) && o.letters.get(time) == Some(&letter);
+    match tied.iter().find(|(_, o)| o.actions.get(time) == Some(&action)) {
+        Some(&(p, other)) if same_letter(other) => Move::Same(p),
+        Some(&(p, _)) => Move::SameAction(p, number),
+        None => Move::Act(action, number),
+    }
+}

@@ -1,0 +1,65 @@
+//! What `check` wants to know of a system's reachable states.
+
+use crate::eval::{bounds, eval_in};
+use crate::graph::{Graph, StateIx, update_values_unclipped};
+use hyperplan_problem::{Expr, LabelId, Leaf, System};
+
+/// Things that are probably not meant, each with a reachable state as an example.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Findings {
+    /// How many reachable states have no transition, and one of them.
+    pub dead_ends: Option<(usize, StateIx)>,
+    /// Labels that hold in no reachable state.
+    pub unreachable: Vec<LabelId>,
+    /// Pairs of written clauses of one action that are enabled together, by position.
+    pub overlaps: Vec<(usize, usize, StateIx)>,
+    /// Written clauses an update of which leaves its variable's range where the clause is enabled.
+    pub lost: Vec<(usize, StateIx)>,
+}
+
+/// Looks at every reachable state.
+#[must_use]
+pub fn inspect(system: &System, graph: &Graph) -> Findings {
+    let mut findings = Findings::default();
+    let mut seen = vec![false; system.labels.len()];
+    for state in 0..graph.len() as StateIx {
+        let row = graph.row(state);
+        if graph.successors(state).is_empty() {
+            let (count, _) = findings.dead_ends.get_or_insert((0, state));
+            *count += 1;
+        }
+        for (at, seen) in seen.iter_mut().enumerate() {
+            *seen |= eval_in(system, &Expr::Leaf(Leaf::Label(LabelId::from(at))), row) != 0;
+        }
+        if eval_in(system, &system.absorb, row) == 0 {
+            clauses(system, state, row, &mut findings);
+        }
+    }
+    findings.unreachable = (0..seen.len()).filter(|&at| !seen[at]).map(LabelId::from).collect();
+    findings
+}
+
+fn clauses(system: &System, state: StateIx, row: &[i64], findings: &mut Findings) {
+    let enabled: Vec<usize> = (0..system.clauses.len())
+        .filter(|&at| !system.clauses[at].generated && eval_in(system, &system.clauses[at].guard, row) != 0)
+        .collect();
+    for (at, &first) in enabled.iter().enumerate() {
+        for &second in &enabled[at + 1..] {
+            let actions = &system.clauses[second].actions;
+            let shared = system.clauses[first].actions.iter().any(|a| actions.contains(a));
+            if shared && !findings.overlaps.iter().any(|o| (o.0, o.1) == (first, second)) {
+                findings.overlaps.push((first, second, state));
+            }
+        }
+        if !findings.lost.iter().any(|l| l.0 == first) && leaves_range(system, first, row) {
+            findings.lost.push((first, state));
+        }
+    }
+}
+
+fn leaves_range(system: &System, clause: usize, row: &[i64]) -> bool {
+    system.clauses[clause].updates.iter().any(|(var, update)| {
+        let (lo, hi) = bounds(&system.vars[*var].ty);
+        update_values_unclipped(system, update, row).iter().any(|v| !(lo..=hi).contains(v))
+    })
+}

@@ -1,0 +1,344 @@
+//! From objectives to queries, and from values back to paths.
+//!
+//! An [`Encoder`] holds what does not depend on the query: the systems' reachable states where they can be
+//! enumerated, and the horizons. A [`Query`] is one script under construction: paths are declared (chosen by the
+//! solver), bound (by a quantifier), fixed (constants) or instantiated (defined by inputs in terms of other paths),
+//! and the formula is unrolled over them.
+//!
+//! Nothing here prints or runs a solver.
+
+mod atom;
+mod eval;
+mod expand;
+mod explicit;
+mod generalize;
+mod graph;
+mod inputs;
+mod inspect;
+mod path;
+mod query;
+mod reach;
+mod realize;
+mod residual;
+mod symbolic;
+#[cfg(test)]
+mod tests;
+mod unroll;
+mod value;
+
+pub use explicit::FixedPath;
+pub use graph::{Graph, LIVE, Letter, StateIx};
+pub use inputs::{Inputs, Move, Start};
+pub use inspect::{Findings, inspect};
+pub use path::{Instance, Known, Path};
+pub use query::{Env, Query};
+pub use reach::Layers;
+pub use symbolic::FixedRows;
+
+use hyperplan_problem::{Mode, Node, Objective, PathId, PathLeaf, Problem, System, SystemId, Trace};
+use hyperplan_smt::Script;
+use std::rc::Rc;
+use symbolic::Moves;
+use typed_index_collections::TiVec;
+
+/// A state as a row of integers, one a variable: Booleans as 0 and 1, enumeration values by position.
+pub type Row = Box<[i64]>;
+
+/// How states are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum States {
+    /// A Boolean for each state that can matter at a time.
+    Onehot,
+    /// A bit-vector for each variable.
+    Bitvec,
+}
+
+/// Budgets of the encoding.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Steps of any path.
+    pub horizon: u64,
+    /// Enumerated states of a system.
+    pub states: usize,
+    /// States that can matter, added up over time (with what is left of the formula), of one path.
+    pub layer_states: usize,
+    /// Residuals of the formula beyond which pruning forgets it.
+    pub residuals: usize,
+    /// Cases of one universally quantified path.
+    pub cases: usize,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Limits {
+            horizon: 100_000,
+            states: 2_000_000,
+            layer_states: 50_000_000,
+            residuals: 20_000,
+            cases: 4096,
+        }
+    }
+}
+
+/// Why an objective cannot be encoded as asked.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Error {
+    /// A path is too long.
+    #[error("path {path} would have {steps} steps; more than {limit} are not supported")]
+    HorizonTooLong {
+        /// The path variable.
+        path: String,
+        /// Its horizon.
+        steps: u64,
+        /// The limit.
+        limit: u64,
+    },
+    /// A budget is exceeded.
+    #[error("{what}: more than {limit}")]
+    TooLarge {
+        /// What there is too much of.
+        what: String,
+        /// The limit.
+        limit: usize,
+    },
+    /// A universally quantified path has too many cases to be expanded.
+    #[error("path {path} has more than {limit} cases; use --quantifiers cegis")]
+    TooManyCases {
+        /// The path variable.
+        path: String,
+        /// The limit.
+        limit: usize,
+    },
+    /// States are to be enumerated, but there are too many.
+    #[error("system {system} has too many states to enumerate; use --states bitvec")]
+    NotEnumerable {
+        /// The system.
+        system: String,
+    },
+}
+
+/// What is known of one system.
+struct Model {
+    graph: Option<Rc<Graph>>,
+    moves: Option<Rc<Moves>>,
+    /// The live states, where the system was enumerated and some are not live.
+    live: Option<Vec<Row>>,
+}
+
+/// What does not depend on the query.
+pub struct Encoder<'a> {
+    /// The problem.
+    pub problem: &'a Problem,
+    /// The objective.
+    pub objective: &'a Objective,
+    /// How states are written.
+    pub states: States,
+    limits: Limits,
+    horizons: TiVec<PathId, u32>,
+    models: TiVec<SystemId, Option<Model>>,
+}
+
+impl<'a> Encoder<'a> {
+    /// Prepares an objective. Without a wish, states are enumerated where the budget allows.
+    ///
+    /// # Errors
+    /// [`Error::HorizonTooLong`], and [`Error::NotEnumerable`] where enumeration is asked for and impossible.
+    pub fn new(
+        problem: &'a Problem,
+        objective: &'a Objective,
+        wish: Option<States>,
+        limits: Limits,
+    ) -> Result<Self, Error> {
+        let horizons = horizons(objective, &limits)?;
+        let mut models: TiVec<SystemId, Option<Model>> = problem.systems.iter().map(|_| None).collect();
+        let mut enumerable = true;
+        for path in &objective.paths {
+            if models[path.system].is_some() {
+                continue;
+            }
+            let system = &problem.systems[path.system];
+            let graph = Graph::explore(system, limits.states).ok().map(Rc::new);
+            if graph.is_none() && wish == Some(States::Onehot) {
+                return Err(Error::NotEnumerable { system: system.name.clone() });
+            }
+            enumerable &= graph.is_some();
+            models[path.system] = Some(Model { graph, moves: None, live: None });
+        }
+        let states = wish.unwrap_or(if enumerable { States::Onehot } else { States::Bitvec });
+        let mut encoder = Encoder { problem, objective, states, limits, horizons, models };
+        if states == States::Bitvec {
+            encoder.prepare_symbolic()?;
+        }
+        Ok(encoder)
+    }
+
+    fn prepare_symbolic(&mut self) -> Result<(), Error> {
+        for (system, model) in self.problem.systems.iter().zip(self.models.iter_mut()) {
+            let Some(model) = model else { continue };
+            model.moves = Some(Rc::new(Moves::new(system)?));
+            if let (Some(graph), Mode::Bounded) = (&model.graph, self.objective.mode)
+                && !graph.all_live()
+            {
+                let mut live: Vec<Row> = (0..graph.len() as StateIx)
+                    .filter(|&s| graph.rank[s as usize] == LIVE)
+                    .map(|s| graph.row(s).into())
+                    .collect();
+                live.sort_unstable();
+                model.live = Some(live);
+            }
+        }
+        Ok(())
+    }
+
+    /// The number of steps of a path.
+    #[must_use]
+    pub fn horizon(&self, path: PathId) -> u32 {
+        self.horizons[path]
+    }
+
+    /// The system of a path.
+    #[must_use]
+    pub fn system(&self, path: PathId) -> &'a System {
+        &self.problem.systems[self.objective.paths[path].system]
+    }
+
+    /// The enumerated states of a path's system.
+    #[must_use]
+    pub fn graph(&self, path: PathId) -> Option<&Rc<Graph>> {
+        self.model(path).graph.as_ref()
+    }
+
+    /// Whether a path's system has a path that is long enough (for ever, in bounded mode); `None` where its states
+    /// were not enumerated.
+    #[must_use]
+    pub fn has_path(&self, path: PathId) -> Option<bool> {
+        let graph = self.graph(path)?;
+        Some(graph.initial.iter().any(|&s| reach::lasts(self.objective.mode, graph, s, 0)))
+    }
+
+    /// For a system that was not enumerated, in bounded mode: a script that is unsatisfiable only if no state is a
+    /// dead end.
+    #[must_use]
+    pub fn stuck(&self, path: PathId) -> Script {
+        let mut script = Script::new();
+        let names = query::names(self, path, 0);
+        if let Some(moves) = &self.model(path).moves {
+            let builder = symbolic::Builder { names: &names, moves, live: None, horizon: 0 };
+            symbolic::stuck_state(&mut script, &builder);
+        }
+        script
+    }
+
+    /// The instance that a counterexample stands for, given the paths before it.
+    #[must_use]
+    pub fn generalize(&self, path: PathId, counterexample: &Known, before: &[Option<Known>]) -> Instance {
+        generalize::generalize(self, path, counterexample, before)
+    }
+
+    /// The path that an instance describes once the paths that it refers to are known; `None` where it describes
+    /// none.
+    #[must_use]
+    pub fn realize(&self, path: PathId, instance: &Instance, known: &[Option<Known>]) -> Option<Known> {
+        realize::realize(self, path, instance, known)
+    }
+
+    /// A trace as the encoder writes it, cut to its path's horizon; `None` where it is no path of the system, or too
+    /// short.
+    #[must_use]
+    pub fn known(&self, trace: &Trace) -> Option<Known> {
+        path::known(self, trace)
+    }
+
+    /// The finitely many instances that together cover every choice of a path for which the formula can get the
+    /// value `want`.
+    ///
+    /// # Errors
+    /// [`Error::TooManyCases`] beyond the limit; [`Error::NotEnumerable`] where states were not enumerated.
+    pub fn cases(&self, path: PathId, want: bool) -> Result<Vec<Instance>, Error> {
+        let graph = self
+            .graph(path)
+            .ok_or_else(|| Error::NotEnumerable { system: self.system(path).name.clone() })?;
+        let symbolic = self.model(path).moves.as_deref();
+        let cases = expand::cases(self, graph, path, want, symbolic)?;
+        let instance = |inputs: Inputs<StateIx>| match symbolic {
+            None => Instance::Explicit(inputs),
+            Some(_) => Instance::Symbolic(Inputs {
+                start: match inputs.start {
+                    Start::State(state) => Start::State(graph.row(state).into()),
+                    Start::Same(path) => Start::Same(path),
+                },
+                moves: inputs.moves,
+            }),
+        };
+        Ok(cases.into_iter().map(instance).collect())
+    }
+
+    /// Whether so many copies of the formula may be made on account of a path.
+    ///
+    /// # Errors
+    /// [`Error::TooManyCases`] beyond the limit.
+    pub fn allow_cases(&self, path: PathId, copies: usize) -> Result<(), Error> {
+        let limit = self.limits.cases;
+        let path = self.objective.paths[path].name.clone();
+        if copies > limit { Err(Error::TooManyCases { path, limit }) } else { Ok(()) }
+    }
+
+    fn model(&self, path: PathId) -> &Model {
+        self.models[self.objective.paths[path].system].as_ref().expect("every quantified system was prepared")
+    }
+
+    fn same_system(&self, p: PathId, q: PathId) -> bool {
+        self.objective.paths[p].system == self.objective.paths[q].system
+    }
+
+    /// The paths quantified before this one whose actions the formula compares with its own.
+    fn tied_before(&self, path: PathId) -> Vec<PathId> {
+        self.partners(path, |leaf| match *leaf {
+            PathLeaf::SameAction(p, q) => Some((p, q)),
+            _ => None,
+        })
+    }
+
+    /// The paths quantified before this one whose states the formula compares with its own.
+    fn compared_before(&self, path: PathId) -> Vec<PathId> {
+        self.partners(path, |leaf| match *leaf {
+            PathLeaf::SameState(p, q) => Some((p, q)),
+            _ => None,
+        })
+    }
+
+    fn partners(&self, path: PathId, pair: impl Fn(&PathLeaf) -> Option<(PathId, PathId)>) -> Vec<PathId> {
+        let mut partners = Vec::new();
+        for node in &self.objective.formula.nodes {
+            let Node::Atom(expr) = node else { continue };
+            expr.for_each_leaf(&mut |leaf| {
+                if let Some((p, q)) = pair(leaf) {
+                    let other = if p == path { q } else { p };
+                    if (p == path || q == path) && other < path {
+                        partners.push(other);
+                    }
+                }
+            });
+        }
+        partners.sort_unstable();
+        partners.dedup();
+        partners
+    }
+}
+
+/// The number of steps of each path; a path that is not read has none.
+fn horizons(objective: &Objective, limits: &Limits) -> Result<TiVec<PathId, u32>, Error> {
+    hyperplan_horizon::horizons(objective)
+        .iter_enumerated()
+        .map(|(path, horizon)| {
+            let steps = horizon.steps.unwrap_or(0);
+            u32::try_from(steps).ok().filter(|_| steps <= limits.horizon).ok_or_else(|| {
+                Error::HorizonTooLong {
+                    path: objective.paths[path].name.clone(),
+                    steps,
+                    limit: limits.horizon,
+                }
+            })
+        })
+        .collect()
+}

@@ -1,0 +1,149 @@
+//! How long a prefix of each path an objective can read (the paper's section VI-A, corrected and tightened).
+//!
+//! The paper's recursion gives a path that does not occur a finite horizon (`x + (-inf) = x`) and charges both
+//! operands of a bounded until with the whole bound. Here a path that does not occur has no horizon, and in
+//! `phi U[a,b] psi` the left operand is read only up to step `b - 1`, since `psi` may come no later than `b`; the
+//! same holds for `R`, its dual. `W` is `U` or `G[0,b] phi`, so it reads `phi` up to `b`.
+//!
+//! Both numbers are computed top-down: the latest time at which each subformula is read. The chain of operators
+//! that leads to the latest read of a path is the reason for its horizon.
+
+use hyperplan_problem::{Expr, FormulaId, Interval, Mode, Node, Objective, PathId, PathLeaf, TemporalOp};
+use typed_index_collections::TiVec;
+
+/// The horizon of one path variable, in steps.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Horizon {
+    /// The paper's number (as corrected for paths that do not occur).
+    pub paper: Option<u64>,
+    /// The number of steps of the path that the objective can read: what hyperplan uses.
+    pub steps: Option<u64>,
+    /// Why: the operators on the way to the latest read, outermost first, each with the steps that it adds. Empty
+    /// under `within`, where the objective says so itself, and for a path that is read only at time 0.
+    pub reason: Vec<(FormulaId, u64)>,
+    /// The latest-read atom, where the path is read at all.
+    pub atom: Option<FormulaId>,
+}
+
+/// The horizon of each path variable of an objective.
+#[must_use]
+pub fn horizons(objective: &Objective) -> TiVec<PathId, Horizon> {
+    let paper = latest_reads(objective, Charge::Paper);
+    let tight = latest_reads(objective, Charge::Tight);
+    objective
+        .paths
+        .keys()
+        .map(|path| {
+            let atom = tight.latest_atom(objective, path);
+            match objective.mode {
+                Mode::Within(steps) => {
+                    let steps = Some(u64::from(steps));
+                    Horizon { paper: steps, steps, reason: Vec::new(), atom }
+                }
+                Mode::Bounded => Horizon {
+                    paper: paper.latest_atom(objective, path).and_then(|atom| paper.time[atom]),
+                    steps: atom.and_then(|atom| tight.time[atom]),
+                    reason: atom.map_or_else(Vec::new, |atom| tight.chain(atom)),
+                    atom,
+                },
+            }
+        })
+        .collect()
+}
+
+/// How much of a bound each operand of an until is charged.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Charge {
+    Paper,
+    Tight,
+}
+
+struct LatestReads {
+    /// The latest time at which a node is read; `None` where it never is.
+    time: TiVec<FormulaId, Option<u64>>,
+    /// The parent from which that read comes, and the steps it adds.
+    from: TiVec<FormulaId, Option<(FormulaId, u64)>>,
+}
+
+fn latest_reads(objective: &Objective, charge: Charge) -> LatestReads {
+    let formula = &objective.formula;
+    let mut reads = LatestReads {
+        time: formula.nodes.iter().map(|_| None).collect(),
+        from: formula.nodes.iter().map(|_| None).collect(),
+    };
+    reads.time[formula.root()] = Some(0);
+    // Parents come after their children, so walking backwards meets every parent first.
+    for (id, node) in formula.nodes.iter_enumerated().rev() {
+        if let Some(now) = reads.time[id] {
+            for (child, delay) in delays(node, charge) {
+                let Some(delay) = delay else { continue };
+                if reads.time[child].is_none_or(|t| t < now + delay) {
+                    reads.time[child] = Some(now + delay);
+                    reads.from[child] = Some((id, delay));
+                }
+            }
+        }
+    }
+    reads
+}
+
+/// For each child, how many steps after the parent it may be read at the latest; `None`: never.
+fn delays(node: &Node, charge: Charge) -> Vec<(FormulaId, Option<u64>)> {
+    // An interval without an end occurs only under `within`, where these numbers are not used.
+    let end = |interval: &Interval| u64::from(interval.hi.unwrap_or(0));
+    match node {
+        Node::Next(a) | Node::WeakNext(a) => vec![(*a, Some(1))],
+        Node::Finally(interval, a) | Node::Globally(interval, a) => vec![(*a, Some(end(interval)))],
+        Node::Temporal(op, interval, lhs, rhs) => {
+            let end = end(interval);
+            let left = match (charge, op) {
+                (Charge::Paper, _) | (_, TemporalOp::WeakUntil) => Some(end),
+                (Charge::Tight, TemporalOp::Until | TemporalOp::Release) => end.checked_sub(1),
+            };
+            vec![(*lhs, left), (*rhs, Some(end))]
+        }
+        _ => node.children().into_iter().map(|c| (c, Some(0))).collect(),
+    }
+}
+
+impl LatestReads {
+    fn latest_atom(&self, objective: &Objective, path: PathId) -> Option<FormulaId> {
+        let mut best: Option<FormulaId> = None;
+        for (id, node) in objective.formula.nodes.iter_enumerated() {
+            let Node::Atom(expr) = node else { continue };
+            let later = self.time[id].is_some() && best.is_none_or(|b| self.time[b] < self.time[id]);
+            if later && reads(expr, path) {
+                best = Some(id);
+            }
+        }
+        best
+    }
+
+    fn chain(&self, atom: FormulaId) -> Vec<(FormulaId, u64)> {
+        let mut chain = Vec::new();
+        let mut at = atom;
+        while let Some((parent, delay)) = self.from[at] {
+            if delay > 0 {
+                chain.push((parent, delay));
+            }
+            at = parent;
+        }
+        chain.reverse();
+        chain
+    }
+}
+
+/// Whether an atom reads anything of the path.
+fn reads(expr: &Expr<PathLeaf>, path: PathId) -> bool {
+    let mut found = false;
+    expr.for_each_leaf(&mut |leaf| {
+        found |= match *leaf {
+            PathLeaf::State(p, _) | PathLeaf::Took(p, _) | PathLeaf::Enabled(p, _) => p == path,
+            PathLeaf::SameAction(p, q) | PathLeaf::SameState(p, q) => p == path || q == path,
+        }
+    });
+    found
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,254 @@
+//! What may be typed. What is meant by it is decided in [`crate::config`].
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Plans robot motion from objectives that relate several paths at once.
+#[derive(Debug, Parser)]
+#[command(name = "hyperplan", version, max_term_width = 100, after_help = AFTER_HELP)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+    #[command(flatten)]
+    pub(crate) global: Global,
+}
+
+const AFTER_HELP: &str = "Exit status: 0 realizable, or the property holds; 1 unrealizable; 2 bad usage or input, \
+or something not supported; 3 undecided; 4 a solver failed; 5 a bug in hyperplan. Of several objectives, the largest.";
+
+/// Options of every command.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Global {
+    /// Nothing but the result: no warnings, no progress
+    #[arg(long, global = true)]
+    pub(crate) quiet: bool,
+    /// More detail, such as the time of each stage
+    #[arg(short, long, global = true, conflicts_with = "quiet")]
+    pub(crate) verbose: bool,
+    /// When to use colors
+    #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t = ColorWhen::Auto)]
+    pub(crate) color: ColorWhen,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ColorWhen {
+    /// On a terminal, unless NO_COLOR is set
+    Auto,
+    Always,
+    Never,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    #[default]
+    Text,
+    /// One JSON object a line
+    Json,
+}
+
+/// A problem file and how to read it.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Problem {
+    /// The problem file (.hp)
+    #[arg(value_name = "FILE")]
+    pub(crate) file: PathBuf,
+    /// Replaces the value of a constant
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
+    pub(crate) set: Vec<(String, String)>,
+}
+
+/// Which objective, and how to print what comes of it.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Selection {
+    /// The objective, or `all`; needed only where the file has several
+    #[arg(long, value_name = "NAME")]
+    pub(crate) objective: Option<String>,
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Output {
+    /// How results are printed
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = Format::Text)]
+    pub(crate) format: Format,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Quantifiers {
+    /// Whatever suits the objective and the solver
+    #[default]
+    Auto,
+    /// Leave quantifiers to the solver
+    Keep,
+    /// Copies of the formula for every case, without quantifiers
+    Expand,
+    /// Counterexample-guided
+    Cegis,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum States {
+    #[default]
+    Auto,
+    /// A Boolean for each possible state
+    Onehot,
+    /// A bit-vector for each variable
+    Bitvec,
+    /// Not supported yet
+    #[value(hide = true)]
+    Int,
+    /// Not supported yet
+    #[value(hide = true)]
+    Enum,
+}
+
+/// How a query is built.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Encoding {
+    /// How quantifiers are decided
+    #[arg(long, value_enum, value_name = "HOW", default_value_t = Quantifiers::Auto)]
+    pub(crate) quantifiers: Quantifiers,
+    /// How states are represented
+    #[arg(long, value_enum, value_name = "HOW", default_value_t = States::Auto)]
+    pub(crate) states: States,
+    /// Seconds for the whole command
+    #[arg(long, value_name = "SECONDS")]
+    pub(crate) timeout: Option<f64>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Find a strategy, verify it, print it
+    Solve(Solve),
+    /// Write SMT-LIB 2
+    Emit(Emit),
+    /// Say how much of each path matters, and why
+    Horizon(Horizon),
+    /// Say what is wrong with a problem file, or doubtful
+    Check(Check),
+    /// Check a strategy without any solver
+    Verify(Verify),
+    /// Draw the map, with the paths of a strategy
+    Plot(Plot),
+    /// List the solvers that were found
+    Solvers(Solvers),
+    /// Show the built-in templates
+    Templates(Templates),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Solve {
+    #[command(flatten)]
+    pub(crate) problem: Problem,
+    #[command(flatten)]
+    pub(crate) selection: Selection,
+    #[command(flatten)]
+    pub(crate) output: Output,
+    #[command(flatten)]
+    pub(crate) encoding: Encoding,
+    /// `builtin`, `z3`, `cvc5`, `yices`, or a command line
+    #[arg(long, value_name = "SOLVER", default_value = "builtin")]
+    pub(crate) solver: String,
+    /// Most memory of a solver
+    #[arg(long, value_name = "MIB")]
+    pub(crate) memory: Option<u64>,
+    /// Draws the map with the paths into an .svg (or .txt) file
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Saves the answer as JSON
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) save: Option<PathBuf>,
+    /// Keeps every query sent to the solver
+    #[arg(long, value_name = "DIR")]
+    pub(crate) queries: Option<PathBuf>,
+    /// Prints the strategy unchecked
+    #[arg(long)]
+    pub(crate) no_verify: bool,
+    /// Seed of the solver
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) seed: u64,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Emit {
+    #[command(flatten)]
+    pub(crate) problem: Problem,
+    #[command(flatten)]
+    pub(crate) selection: Selection,
+    #[command(flatten)]
+    pub(crate) encoding: Encoding,
+    /// The solver to write for; without it, plain SMT-LIB for all
+    #[arg(long, value_name = "SOLVER")]
+    pub(crate) solver: Option<String>,
+    /// A file, or a directory for several objectives; without it, standard output
+    #[arg(short, long, value_name = "FILE|DIR")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Horizon {
+    #[command(flatten)]
+    pub(crate) problem: Problem,
+    #[command(flatten)]
+    pub(crate) selection: Selection,
+    #[command(flatten)]
+    pub(crate) output: Output,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Check {
+    #[command(flatten)]
+    pub(crate) problem: Problem,
+    #[command(flatten)]
+    pub(crate) output: Output,
+    /// Seconds for the whole command
+    #[arg(long, value_name = "SECONDS")]
+    pub(crate) timeout: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Verify {
+    #[command(flatten)]
+    pub(crate) problem: Problem,
+    /// A strategy, as `solve --save` and `solve --format json` write it
+    #[arg(value_name = "STRATEGY.json")]
+    pub(crate) strategy: PathBuf,
+    #[command(flatten)]
+    pub(crate) selection: Selection,
+    #[command(flatten)]
+    pub(crate) output: Output,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Plot {
+    #[command(flatten)]
+    pub(crate) problem: Problem,
+    /// A strategy, as `solve --save` and `solve --format json` write it
+    #[arg(value_name = "STRATEGY.json")]
+    pub(crate) strategy: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) selection: Selection,
+    /// An .svg (or .txt) file; without it, text on standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Solvers {
+    #[command(flatten)]
+    pub(crate) output: Output,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Templates {
+    /// One template; without it, all
+    pub(crate) name: Option<String>,
+}
+
+fn setting(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() && !value.trim().is_empty() => {
+            Ok((name.trim().to_owned(), value.trim().to_owned()))
+        }
+        _ => Err("expected NAME=VALUE, such as T=8".to_owned()),
+    }
+}

@@ -1,0 +1,29 @@
+//! One module for each command.
+
+mod check;
+mod emit;
+mod horizon;
+mod plot;
+mod solve;
+mod solvers;
+mod templates;
+mod verify;
+
+use crate::args::{Cli, Command};
+use crate::failure::Outcome;
+use crate::output::Output;
+
+/// Runs the command that was asked for.
+pub(crate) fn run(cli: &Cli, out: &mut Output) -> Outcome {
+    let verbose = cli.global.verbose;
+    match &cli.command {
+        Command::Solve(args) => solve::run(args, verbose, cli.global.quiet, out),
+        Command::Emit(args) => emit::run(args, out),
+        Command::Horizon(args) => horizon::run(args, out),
+        Command::Check(args) => check::run(args, verbose, out),
+        Command::Verify(args) => verify::run(args, out),
+        Command::Plot(args) => plot::run(args, out),
+        Command::Solvers(args) => solvers::run(args, out),
+        Command::Templates(args) => templates::run(args, out),
+    }
+}

@@ -1,0 +1,215 @@
+//! `hyperplan solve`: from a problem file to a verified strategy.
+
+use crate::args::{self, Format};
+use crate::config;
+use crate::failure::{Outcome, Status};
+use crate::load::Loaded;
+use crate::output::{Output, write_file};
+use crate::report::{json, write_picture};
+use hyperplan_plan as plan;
+use hyperplan_problem::answer::{Answer, Ordered, Seconds, Solver, Verdict, Verified, to_witness};
+use hyperplan_problem::{Objective, Quantifier, Strategy, Trace};
+use hyperplan_render::{Board, Scene, TextStyle, actions_line, table, text_map};
+use std::time::{Duration, Instant};
+
+/// Larger maps are left to `--plot`.
+const MAP_COLUMNS: u32 = 64;
+const MAP_ROWS: u32 = 40;
+/// Longer tables are left to `--save`.
+const TABLE_ROWS: usize = 60;
+
+pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Output) -> Outcome {
+    let config = config::Solve::new(args)?;
+    let loaded = Loaded::read(&args.problem, out)?;
+    let objectives = loaded.selected(args.selection.objective.as_deref(), false)?;
+    let several = objectives.len() > 1;
+    let mut worst = Status::Good;
+    let mut saved = String::new();
+    for (index, objective) in objectives.into_iter().enumerate() {
+        if out.is_closed() {
+            break;
+        }
+        let start = Instant::now();
+        let outcome = match plan::solve(&loaded.problem, objective, &config.plan) {
+            Ok(outcome) => outcome,
+            Err(error) => {
+                // The other objectives may do better.
+                out.error(format_args!("error: {}: {error}", objective.name));
+                worst = worst.max(Status::from_code(error.exit_code()));
+                continue;
+            }
+        };
+        let answer = answer(&loaded, objective, &outcome, start.elapsed());
+        let found = Found { loaded: &loaded, objective, outcome: &outcome, answer: &answer };
+        match args.output.format {
+            Format::Json => out.line(json(&answer)?)?,
+            Format::Text if quiet => out.line(found.verdict_line())?,
+            Format::Text => {
+                let text = found.text(verbose, out.color);
+                out.write(|w| if index > 0 { writeln!(w) } else { Ok(()) })?;
+                out.line(text.trim_end())?;
+            }
+        }
+        outcome.notes.iter().for_each(|note| out.remark(format_args!("note: {note}")));
+        if let (Some(picture), Some(_)) = (&config.plot, &outcome.witness) {
+            let named = several.then(|| picture.for_objective(&objective.name));
+            write_picture(found.scene(), named.as_ref().unwrap_or(picture))?;
+        }
+        saved.push_str(&json(&answer)?);
+        saved.push('\n');
+        worst = worst.max(status(answer.verdict));
+    }
+    if let Some(path) = &config.save {
+        write_file(path, saved.as_bytes())?;
+    }
+    Ok(worst)
+}
+
+fn status(verdict: Verdict) -> Status {
+    match verdict {
+        Verdict::Realizable => Status::Good,
+        Verdict::Unrealizable => Status::Unrealizable,
+        Verdict::Unknown => Status::Undecided,
+    }
+}
+
+fn answer(loaded: &Loaded, objective: &Objective, outcome: &plan::Outcome, elapsed: Duration) -> Answer {
+    let names = objective.paths.iter().map(|p| p.name.clone());
+    Answer {
+        file: loaded.file.clone(),
+        objective: objective.name.clone(),
+        verdict: match outcome.verdict {
+            plan::Verdict::Realizable => Verdict::Realizable,
+            plan::Verdict::Unrealizable => Verdict::Unrealizable,
+            plan::Verdict::Unknown => Verdict::Unknown,
+        },
+        reason: outcome.reason.clone(),
+        horizon: Ordered(names.zip(outcome.horizons.iter().copied()).collect()),
+        witness: outcome.witness.as_ref().map(|s| to_witness(&loaded.problem, objective, s)),
+        verified: outcome.verified.as_ref().map(|verified| match verified {
+            plan::Verified::BySearch => Verified::BySearch,
+            plan::Verified::BySolver => Verified::BySolver,
+        }),
+        solver: Solver { name: outcome.solver.name.clone(), version: outcome.solver.version.clone() },
+        quantifiers: outcome.quantifiers.to_string(),
+        states: outcome.states.to_string(),
+        iterations: outcome.iterations,
+        seconds: Seconds {
+            read: rounded(loaded.time.as_secs_f64()),
+            encode: rounded(outcome.seconds.encode),
+            solve: rounded(outcome.seconds.solve),
+            verify: rounded(outcome.seconds.verify),
+            total: rounded((loaded.time + elapsed).as_secs_f64()),
+        },
+    }
+}
+
+/// To microseconds: what a clock can tell.
+fn rounded(seconds: f64) -> f64 {
+    (seconds * 1e6).round() / 1e6
+}
+
+/// An outcome and all it takes to print it.
+struct Found<'a> {
+    loaded: &'a Loaded,
+    objective: &'a Objective,
+    outcome: &'a plan::Outcome,
+    answer: &'a Answer,
+}
+
+impl<'a> Found<'a> {
+    fn scene(&self) -> Scene<'a> {
+        let traces = self.outcome.witness.as_ref().map_or(&[][..], |s| &s.traces);
+        Scene { problem: &self.loaded.problem, objective: Some(self.objective), traces }
+    }
+
+    fn verdict_line(&self) -> String {
+        let verdict = match self.answer.verdict {
+            Verdict::Realizable => "realizable",
+            Verdict::Unrealizable => "unrealizable",
+            Verdict::Unknown => "unknown",
+        };
+        match &self.answer.reason {
+            Some(reason) => format!("{}: {verdict}: {reason}", self.objective.name),
+            None => format!("{}: {verdict}", self.objective.name),
+        }
+    }
+
+    fn text(&self, verbose: bool, color: bool) -> String {
+        let mut text = self.verdict_line();
+        text.push_str(&format!("\nhorizon: {}\n", self.horizons()));
+        if let Some(strategy) = &self.outcome.witness {
+            text.push_str(&self.strategy(strategy, color));
+        }
+        text.push_str(&self.checked());
+        text.push_str(&self.effort(verbose));
+        text
+    }
+
+    fn horizons(&self) -> String {
+        let each = self.answer.horizon.0.iter().map(|(name, steps)| match steps {
+            Some(steps) => format!("{name} {steps}"),
+            None => format!("{name} not read"),
+        });
+        each.collect::<Vec<_>>().join(", ")
+    }
+
+    fn strategy(&self, strategy: &Strategy, color: bool) -> String {
+        let mut text = String::new();
+        if self.objective.paths.first().map(|p| p.quantifier) == Some(Quantifier::Forall) {
+            text.push_str("counterexample:\n");
+        }
+        for trace in &strategy.traces {
+            let actions = actions_line(&self.loaded.problem, self.objective, trace);
+            text.push_str(&format!("{}: {actions}\n", self.name(trace)));
+        }
+        if self.drawable(strategy)
+            && let Ok(map) = text_map(self.scene(), TextStyle { color })
+        {
+            return text + "\n" + &map + "\n";
+        }
+        for trace in strategy.traces.iter().filter(|t| t.states.len() <= TABLE_ROWS) {
+            let name = self.name(trace);
+            text.push_str(&format!("\n{name}:\n{}", table(&self.loaded.problem, self.objective, trace)));
+        }
+        text + "\n"
+    }
+
+    fn name(&self, trace: &Trace) -> &str {
+        self.objective.paths.get(trace.path).map_or("", |p| p.name.as_str())
+    }
+
+    fn drawable(&self, strategy: &Strategy) -> bool {
+        strategy.traces.iter().all(|trace| {
+            let system = self.objective.paths.get(trace.path).map(|p| &self.loaded.problem.systems[p.system]);
+            let board = system.and_then(|s| Board::of(s).ok());
+            board.is_some_and(|b| b.width <= MAP_COLUMNS && b.height <= MAP_ROWS)
+        })
+    }
+
+    fn checked(&self) -> String {
+        let words = match (self.answer.verified, &self.answer.witness) {
+            (Some(Verified::BySearch), _) => "verified by search\n",
+            (Some(Verified::BySolver), _) => "verified by a solver (too large to search)\n",
+            (None, Some(_)) => "not verified\n",
+            (None, None) => "",
+        };
+        words.to_owned()
+    }
+
+    fn effort(&self, verbose: bool) -> String {
+        let Answer { solver, quantifiers, states, iterations, seconds, .. } = self.answer;
+        let rounds = if *iterations == 1 { "round" } else { "rounds" };
+        let mut text = format!(
+            "{} {}, quantifiers {quantifiers}, states {states}, {iterations} {rounds}, {:.3} s\n",
+            solver.name, solver.version, seconds.total
+        );
+        if verbose {
+            let Seconds { read, encode, solve, verify, .. } = seconds;
+            text.push_str(&format!(
+                "read {read:.3} s, encode {encode:.3} s, solve {solve:.3} s, verify {verify:.3} s\n"
+            ));
+        }
+        text
+    }
+}

@@ -1,0 +1,95 @@
+//! What was typed becomes what is meant: the one place where arguments are checked.
+
+use crate::args::{self, ColorWhen};
+use crate::failure::{Failure, Outcome};
+use crate::output::check_writable;
+use crate::report::Picture;
+use crate::signals;
+use hyperplan_plan::{Config, Quantifiers, States};
+use hyperplan_solver::{Deadline, Spec};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// A checked `solve` command.
+pub(crate) struct Solve {
+    pub(crate) plan: Config,
+    pub(crate) plot: Option<Picture>,
+    pub(crate) save: Option<PathBuf>,
+}
+
+impl Solve {
+    pub(crate) fn new(args: &args::Solve) -> Outcome<Self> {
+        let plot = args.plot.as_deref().map(Picture::new).transpose()?;
+        for path in args.plot.iter().chain(&args.save) {
+            check_writable(path)?;
+        }
+        if let Some(folder) = &args.queries {
+            std::fs::create_dir_all(folder).map_err(|e| {
+                Failure::input(format_args!("cannot make directory {}: {e}", folder.display()))
+            })?;
+        }
+        if args.memory == Some(0) {
+            return Err(Failure::input("--memory 0 leaves no memory to the solver"));
+        }
+        let plan = Config {
+            solver: solver(&args.solver)?,
+            quantifiers: quantifiers(args.encoding.quantifiers),
+            states: states(args.encoding.states)?,
+            deadline: deadline(args.encoding.timeout)?,
+            verify: !args.no_verify,
+            seed: args.seed,
+            memory_mib: args.memory,
+            queries: args.queries.clone(),
+        };
+        Ok(Solve { plan, plot, save: args.save.clone() })
+    }
+}
+
+/// A solver by name or command line.
+pub(crate) fn solver(text: &str) -> Outcome<Spec> {
+    text.parse::<Spec>().map_err(|e| Failure::input(format_args!("{e}")))
+}
+
+pub(crate) fn quantifiers(typed: args::Quantifiers) -> Quantifiers {
+    match typed {
+        args::Quantifiers::Auto => Quantifiers::Auto,
+        args::Quantifiers::Keep => Quantifiers::Keep,
+        args::Quantifiers::Expand => Quantifiers::Expand,
+        args::Quantifiers::Cegis => Quantifiers::Cegis,
+    }
+}
+
+pub(crate) fn states(typed: args::States) -> Outcome<States> {
+    match typed {
+        args::States::Auto => Ok(States::Auto),
+        args::States::Onehot => Ok(States::Onehot),
+        args::States::Bitvec => Ok(States::Bitvec),
+        args::States::Int => Err(Failure::input("--states int is not supported yet; use onehot or bitvec")),
+        args::States::Enum => Err(Failure::input("--states enum is not supported yet; use onehot or bitvec")),
+    }
+}
+
+/// The end of the whole command, by time or by signal.
+pub(crate) fn deadline(timeout: Option<f64>) -> Outcome<Deadline> {
+    let deadline = match timeout {
+        None => Deadline::never(),
+        // Too long to count is as good as no end.
+        Some(seconds) if seconds > 0.0 => {
+            Deadline::after(Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX))
+        }
+        Some(seconds) => {
+            return Err(Failure::input(format_args!("--timeout {seconds} is not a time to work in")));
+        }
+    };
+    signals::watch(&deadline.cancel_flag());
+    Ok(deadline)
+}
+
+/// Whether to use colors, where that was said.
+pub(crate) fn color(when: ColorWhen) -> Option<bool> {
+    match when {
+        ColorWhen::Auto => None,
+        ColorWhen::Always => Some(true),
+        ColorWhen::Never => Some(false),
+    }
+}

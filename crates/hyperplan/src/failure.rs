@@ -1,0 +1,65 @@
+//! How a command fails: with a message and an exit status.
+
+use std::fmt;
+use std::process::ExitCode;
+
+/// Exit statuses, as `design` of the command line has them; the largest of several counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Status {
+    /// Realizable, or the property holds, or the command did what it was to do.
+    Good = 0,
+    /// Unrealizable, or the property does not hold.
+    Unrealizable = 1,
+    /// Bad usage, bad input, or not supported.
+    Input = 2,
+    /// Undecided.
+    Undecided = 3,
+    /// A solver failed.
+    Solver = 4,
+    /// A bug of ours.
+    Bug = 5,
+}
+
+impl Status {
+    /// The status with that number; unknown numbers are our bug.
+    pub(crate) fn from_code(code: u8) -> Self {
+        match code {
+            0 => Status::Good,
+            1 => Status::Unrealizable,
+            2 => Status::Input,
+            3 => Status::Undecided,
+            4 => Status::Solver,
+            _ => Status::Bug,
+        }
+    }
+}
+
+impl From<Status> for ExitCode {
+    fn from(status: Status) -> ExitCode {
+        ExitCode::from(status as u8)
+    }
+}
+
+/// Why a command stopped.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    /// The exit status.
+    pub(crate) status: Status,
+    /// The message; empty where everything was said already, as diagnostics.
+    pub(crate) message: String,
+}
+
+impl Failure {
+    /// Bad usage or input.
+    pub(crate) fn input(message: impl fmt::Display) -> Self {
+        Failure { status: Status::Input, message: message.to_string() }
+    }
+
+    /// Bad input, and the messages were printed.
+    pub(crate) fn said() -> Self {
+        Failure { status: Status::Input, message: String::new() }
+    }
+}
+
+/// A result of a command or a part of one.
+pub(crate) type Outcome<T = Status> = Result<T, Failure>;

@@ -1,0 +1,175 @@
+//! Files into problems and strategies.
+
+use crate::args;
+use crate::failure::{Failure, Outcome};
+use crate::output::Output;
+use crate::report;
+use hyperplan_problem::answer::{StrategyFile, to_strategy};
+use hyperplan_problem::{Loader, Objective, Overrides, Problem, Strategy, read};
+use hyperplan_syntax::{Diagnostic, SourceMap, Span};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// The most bytes of a file that are read: far more than any map or strategy has.
+const FILE_LIMIT: u64 = 1 << 30;
+
+/// A problem without errors.
+pub(crate) struct Loaded {
+    /// The file as it was named.
+    pub(crate) file: String,
+    pub(crate) problem: Problem,
+    pub(crate) sources: SourceMap,
+    /// How long reading took.
+    pub(crate) time: Duration,
+}
+
+impl Loaded {
+    /// Reads a problem file; its errors and warnings are printed.
+    pub(crate) fn read(args: &args::Problem, out: &Output) -> Outcome<Loaded> {
+        let start = Instant::now();
+        let text = read_source(&args.file)?;
+        let (problem, sources, diagnostics) = Self::parse(args, &text);
+        report::diagnostics(&sources, &diagnostics, out);
+        let problem = problem.ok_or_else(Failure::said)?;
+        Ok(Loaded { file: args.file.display().to_string(), problem, sources, time: start.elapsed() })
+    }
+
+    /// The problem that a text means, where it has no errors, and what is wrong with it.
+    pub(crate) fn parse(args: &args::Problem, text: &str) -> (Option<Problem>, SourceMap, Vec<Diagnostic>) {
+        let folder = Beside(args.file.parent().unwrap_or(Path::new("")).to_owned());
+        let overrides = Overrides { values: args.set.clone() };
+        let mut sources = SourceMap::new();
+        let lowered = read(&mut sources, &args.file.display().to_string(), text, &folder, &overrides);
+        let problem = (!lowered.has_errors()).then_some(lowered.problem);
+        (problem, sources, lowered.diagnostics)
+    }
+
+    /// The objectives that are meant: the one of that name, all for `all`, and without a name the only one.
+    pub(crate) fn selected(&self, name: Option<&str>, all_by_default: bool) -> Outcome<Vec<&Objective>> {
+        let objectives: Vec<&Objective> = self.problem.objectives.iter().collect();
+        let names: Vec<&str> = objectives.iter().map(|o| o.name.as_str()).collect();
+        match name {
+            _ if objectives.is_empty() => Err(Failure::input(format_args!("{} has no objective", self.file))),
+            Some("all") => Ok(objectives),
+            Some(name) => match self.problem.objective(name) {
+                Some(objective) => Ok(vec![objective]),
+                None => {
+                    let names = names.join(", ");
+                    Err(Failure::input(format_args!(
+                        "{} has no objective `{name}`; it has {names}",
+                        self.file
+                    )))
+                }
+            },
+            None if objectives.len() == 1 || all_by_default => Ok(objectives),
+            None => Err(Failure::input(format_args!(
+                "{} has several objectives; choose one of {} with --objective NAME, or --objective all",
+                self.file,
+                names.join(", ")
+            ))),
+        }
+    }
+
+    /// What is written at a place, on one line.
+    pub(crate) fn snippet(&self, span: Span) -> String {
+        let words: Vec<&str> = self.sources.snippet(span).split_whitespace().collect();
+        let line = words.join(" ");
+        match line.char_indices().nth(60) {
+            Some((end, _)) => format!("{}...", &line[..end]),
+            None => line,
+        }
+    }
+}
+
+/// Files named in a problem file are beside it.
+struct Beside(PathBuf);
+
+impl Loader for Beside {
+    fn load(&self, path: &str) -> Result<Vec<u8>, String> {
+        read_bytes(&self.0.join(path)).map_err(|e| reason(&e))
+    }
+}
+
+/// The text of a problem file.
+pub(crate) fn read_source(path: &Path) -> Outcome<String> {
+    let cannot = |why: String| Failure::input(format_args!("cannot read {}: {why}", path.display()));
+    let bytes = read_bytes(path).map_err(|e| cannot(reason(&e)))?;
+    match String::from_utf8(bytes) {
+        Ok(text) if !text.contains('\0') => Ok(text),
+        _ => Err(cannot("it is not a text file".to_owned())),
+    }
+}
+
+fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
+    // A directory can be opened on some systems, and then says something less clear.
+    let length = std::fs::metadata(path)?.len();
+    if path.is_dir() {
+        return Err(io::Error::other("it is a directory"));
+    }
+    if length > FILE_LIMIT {
+        return Err(io::Error::other(format!("it has more than {FILE_LIMIT} bytes")));
+    }
+    std::fs::read(path)
+}
+
+/// Why a file cannot be read, in words without the system's error number.
+fn reason(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+        _ => error.to_string(),
+    }
+}
+
+/// A strategy file.
+pub(crate) struct Given {
+    /// The file as it was named.
+    pub(crate) name: String,
+    answers: Vec<StrategyFile>,
+}
+
+impl Given {
+    /// Reads a strategy file.
+    pub(crate) fn read(path: &Path) -> Outcome<Given> {
+        let name = path.display().to_string();
+        let answers = StrategyFile::read_all(&read_source(path)?)
+            .map_err(|e| Failure::input(format_args!("{name} is no strategy: {e}")))?;
+        if answers.is_empty() {
+            return Err(Failure::input(format_args!("{name} is no strategy: it is empty")));
+        }
+        Ok(Given { name, answers })
+    }
+
+    /// The strategies of the file that are meant, each with its objective.
+    pub(crate) fn strategies<'a>(
+        &self,
+        loaded: &'a Loaded,
+        name: Option<&str>,
+    ) -> Outcome<Vec<(&'a Objective, Strategy)>> {
+        let failure = |message: String| Failure::input(format_args!("{}: {message}", self.name));
+        let wanted = name.filter(|n| *n != "all");
+        let fits = |answer: &&StrategyFile| match (wanted, &answer.objective) {
+            (Some(wanted), Some(own)) => wanted == own,
+            _ => true,
+        };
+        let mut found = Vec::new();
+        for answer in self.answers.iter().filter(fits) {
+            let objective = match wanted.or(answer.objective.as_deref()) {
+                Some(name) => loaded.selected(Some(name), false)?,
+                None => loaded.selected(None, false)?,
+            };
+            let Some(objective) = objective.first().copied() else { continue };
+            let Some(witness) = &answer.witness else {
+                return Err(failure(format!("there is no witness for objective {}", objective.name)));
+            };
+            let strategy =
+                to_strategy(&loaded.problem, objective, witness).map_err(|e| failure(e.to_string()))?;
+            found.push((objective, strategy));
+        }
+        match (found.is_empty(), wanted) {
+            (true, Some(wanted)) => Err(failure(format!("there is no strategy for objective {wanted}"))),
+            _ => Ok(found),
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! The `hyperplan` command: flags, files and exit statuses around the libraries.
+
+mod args;
+mod commands;
+mod config;
+mod failure;
+mod load;
+mod output;
+mod report;
+mod signals;
+
+use clap::Parser as _;
+use failure::{Outcome, Status};
+use output::Output;
+use std::process::ExitCode;
+
+/// Expressions nest some thousand levels deep, and everything that walks them recurses: more than the main thread
+/// has on some systems.
+const STACK: usize = 256 << 20;
+
+fn main() -> ExitCode {
+    let cli = match args::Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(e) => return usage(&e),
+    };
+    let run = || run(&cli);
+    std::thread::scope(|scope| {
+        let worker = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, run);
+        // A thread that panicked has said so; that is our bug.
+        worker.map_or_else(|_| run(), |w| w.join().unwrap_or(ExitCode::from(Status::Bug)))
+    })
+}
+
+/// Help and version go to standard output and are no failure; everything else is bad usage.
+fn usage(error: &clap::Error) -> ExitCode {
+    let status = if error.use_stderr() { Status::Input } else { Status::Good };
+    // Nothing is left to do if it cannot be printed.
+    let _ = error.print();
+    status.into()
+}
+
+fn run(cli: &args::Cli) -> ExitCode {
+    let mut out = Output::new(cli.global.quiet, config::color(cli.global.color));
+    let result = commands::run(cli, &mut out);
+    let status = finish(&mut out, result);
+    signals::status().unwrap_or_else(|| status.into())
+}
+
+fn finish(out: &mut Output, result: Outcome) -> Status {
+    let result = result.and_then(|status| out.flush().map(|()| status));
+    result.unwrap_or_else(|failure| {
+        if !failure.message.is_empty() {
+            out.error(format_args!("error: {}", failure.message));
+        }
+        failure.status
+    })
+}

@@ -1,0 +1,105 @@
+//! Standard output and standard error: results go to the one, everything else to the other.
+
+use crate::failure::{Failure, Outcome};
+use std::fmt::Display;
+use std::io::{self, IsTerminal, Write};
+use std::path::Path;
+
+/// Where a command prints.
+pub(crate) struct Output {
+    stdout: io::BufWriter<io::Stdout>,
+    /// The reader has gone (`| head`): nothing more needs printing, and nothing is wrong.
+    closed: bool,
+    quiet: bool,
+    /// Colors on standard output.
+    pub(crate) color: bool,
+    /// Colors on standard error.
+    pub(crate) color_errors: bool,
+}
+
+impl Output {
+    /// Colors are used where asked for, or where a terminal can show them.
+    pub(crate) fn new(quiet: bool, color: Option<bool>) -> Self {
+        let wanted = |terminal: bool| color.unwrap_or(terminal && std::env::var_os("NO_COLOR").is_none());
+        let color = wanted(io::stdout().is_terminal());
+        let color_errors = wanted(io::stderr().is_terminal());
+        Output { stdout: io::BufWriter::new(io::stdout()), closed: false, quiet, color, color_errors }
+    }
+
+    /// Whether the reader of standard output has gone.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// Prints a result and a line break.
+    pub(crate) fn line(&mut self, text: impl Display) -> Outcome<()> {
+        self.write(|out| writeln!(out, "{text}"))?;
+        // A result that took minutes should be seen at once.
+        self.flush()
+    }
+
+    /// Prints a result as it is.
+    pub(crate) fn write(&mut self, print: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Outcome<()> {
+        if self.closed {
+            return Ok(());
+        }
+        let done = print(&mut self.stdout);
+        self.settle(done)
+    }
+
+    /// Sends what is still in the buffer.
+    pub(crate) fn flush(&mut self) -> Outcome<()> {
+        if self.closed {
+            return Ok(());
+        }
+        let done = self.stdout.flush();
+        self.settle(done)
+    }
+
+    fn settle(&mut self, done: io::Result<()>) -> Outcome<()> {
+        match done {
+            Err(e) if e.kind() == io::ErrorKind::BrokenPipe => {
+                self.closed = true;
+                Ok(())
+            }
+            other => other.map_err(|e| Failure::input(format!("cannot write standard output: {e}"))),
+        }
+    }
+
+    /// Prints a remark on standard error, unless remarks are not wanted.
+    pub(crate) fn remark(&self, text: impl Display) {
+        if !self.quiet {
+            self.error(text);
+        }
+    }
+
+    /// Prints on standard error. There is nothing left to do if that cannot be written.
+    pub(crate) fn error(&self, text: impl Display) {
+        let _ = writeln!(io::stderr().lock(), "{text}");
+    }
+}
+
+/// Writes a file.
+pub(crate) fn write_file(path: &Path, contents: &[u8]) -> Outcome<()> {
+    std::fs::write(path, contents).map_err(|e| cannot_write(path, &e))
+}
+
+/// The failure to write a file.
+pub(crate) fn cannot_write(path: &Path, error: &io::Error) -> Failure {
+    Failure::input(format!("cannot write {}: {error}", path.display()))
+}
+
+/// Refuses a file that could not be written after all the work.
+pub(crate) fn check_writable(path: &Path) -> Outcome<()> {
+    if path.is_dir() {
+        return Err(Failure::input(format!("cannot write {}: it is a directory", path.display())));
+    }
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() && !parent.is_dir() => Err(Failure::input(format!(
+            "cannot write {}: there is no directory {}",
+            path.display(),
+            parent.display()
+        ))),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,73 @@
+//! How results and messages are printed, where several commands do it alike.
+
+use crate::failure::{Failure, Outcome, Status};
+use crate::output::{Output, write_file};
+use hyperplan_render::{Scene, TextStyle, svg, text_map};
+use hyperplan_syntax::{Diagnostic, SourceMap, render};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// One line of JSON.
+pub(crate) fn json(value: &impl Serialize) -> Outcome<String> {
+    // Our own structs have string keys and finite numbers.
+    serde_json::to_string(value)
+        .map_err(|e| Failure { status: Status::Bug, message: format!("cannot write JSON: {e}") })
+}
+
+/// Width of messages. The same on every terminal, so that messages can be compared.
+const WIDTH: usize = 100;
+
+/// Prints diagnostics on standard error: errors always, warnings unless they are not wanted.
+pub(crate) fn diagnostics(sources: &SourceMap, diagnostics: &[Diagnostic], out: &Output) {
+    let (errors, warnings): (Vec<_>, Vec<_>) = diagnostics.iter().cloned().partition(Diagnostic::is_error);
+    if !errors.is_empty() {
+        out.error(render(sources, &errors, out.color_errors, WIDTH).trim_end());
+    }
+    if !warnings.is_empty() {
+        out.remark(render(sources, &warnings, out.color_errors, WIDTH).trim_end());
+    }
+}
+
+/// A file to draw into, its kind known from its name.
+pub(crate) struct Picture {
+    path: PathBuf,
+    kind: Kind,
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Svg,
+    Text,
+}
+
+impl Picture {
+    /// Refuses names that do not end in a known way.
+    pub(crate) fn new(path: &Path) -> Outcome<Self> {
+        let kind = match path.extension().and_then(|e| e.to_str()) {
+            Some("svg") => Kind::Svg,
+            Some("txt") => Kind::Text,
+            _ => {
+                let message =
+                    format!("cannot draw into {}: only .svg and .txt are supported", path.display());
+                return Err(Failure::input(message));
+            }
+        };
+        Ok(Picture { path: path.to_owned(), kind })
+    }
+
+    /// The file for one of several objectives: its name goes before the extension.
+    pub(crate) fn for_objective(&self, name: &str) -> Self {
+        let stem = self.path.file_stem().unwrap_or_default().to_string_lossy();
+        let extension = self.path.extension().unwrap_or_default().to_string_lossy();
+        Picture { path: self.path.with_file_name(format!("{stem}-{name}.{extension}")), kind: self.kind }
+    }
+}
+
+/// Draws into a file.
+pub(crate) fn write_picture(scene: Scene<'_>, picture: &Picture) -> Outcome<()> {
+    let drawn = match picture.kind {
+        Kind::Svg => svg(scene),
+        Kind::Text => text_map(scene, TextStyle::default()),
+    };
+    write_file(&picture.path, drawn.map_err(Failure::input)?.as_bytes())
+}

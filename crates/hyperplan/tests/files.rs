@@ -1,0 +1,75 @@
+//! What is no problem file, and what is no usage.
+
+mod common;
+
+use common::{hyperplan, text};
+
+#[test]
+fn files_that_are_no_problem() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let write = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).expect("writable");
+        path
+    };
+    let binary = write("binary.hp", &[0x7f, b'E', b'L', b'F', 0, 0, 0xff, 0xfe]);
+    let zeros = write("zeros.hp", &[0; 64]);
+    let empty = write("empty.hp", b"");
+    for command in ["solve", "check", "horizon", "emit", "plot"] {
+        for (file, message) in [
+            ("nowhere.hp", "there is no such file"),
+            (text(folder.path()), "it is a directory"),
+            (text(&binary), "it is not a text file"),
+            (text(&zeros), "it is not a text file"),
+            (text(&empty), "empty"),
+        ] {
+            let run = hyperplan(&[command, file]);
+            assert_eq!((run.status, run.stdout.as_str()), (2, ""), "{command} {file}: {}", run.stderr);
+            assert!(run.stderr.contains(message) && run.stderr.contains(file), "{command}: {}", run.stderr);
+        }
+    }
+}
+
+#[test]
+fn bad_usage() {
+    for arguments in [
+        &["frobnicate"][..],
+        &["solve"],
+        &["solve", "rooms.hp", "--frobnicate"],
+        &["solve", "rooms.hp", "--set", "T"],
+        &["solve", "rooms.hp", "--states", "wild"],
+        &["solve", "rooms.hp", "--timeout", "soon"],
+        &["check", "rooms.hp", "--quiet", "-v"],
+        &["verify", "rooms.hp"],
+    ] {
+        let run = hyperplan(arguments);
+        assert_eq!((run.status, run.stdout.as_str()), (2, ""), "{arguments:?}");
+        assert!(run.stderr.starts_with("error: "), "{arguments:?}: {}", run.stderr);
+    }
+    assert_eq!(hyperplan(&[]).status, 2);
+}
+
+#[test]
+fn help_and_version_are_no_failure() {
+    let version = hyperplan(&["--version"]);
+    assert_eq!((version.status, version.stderr.as_str()), (0, ""));
+    assert_eq!(version.stdout, format!("hyperplan {}\n", env!("CARGO_PKG_VERSION")));
+    let help = hyperplan(&["solve", "--help"]);
+    assert_eq!((help.status, help.stderr.as_str()), (0, ""));
+    assert!(help.stdout.contains("--quantifiers"));
+}
+
+#[test]
+fn constants_can_be_set() {
+    let horizon = |set: &str| {
+        hyperplan(&["horizon", "rooms.hp", "--objective", "sp", "--format", "json", "--set", set])
+    };
+    assert_eq!(horizon("T=9").json()[0]["horizon"]["p"]["steps"], 9);
+    let unknown = horizon("U=9");
+    assert_eq!((unknown.status, unknown.stdout.as_str()), (2, ""), "{}", unknown.stderr);
+    assert!(unknown.stderr.contains('U'), "{}", unknown.stderr);
+    for bad in ["T=-1", "T=many", "T=1000000", "T=99999999999999999999"] {
+        let run = horizon(bad);
+        assert_eq!((run.status, run.stdout.as_str()), (2, ""), "{bad}: {}", run.stderr);
+    }
+}

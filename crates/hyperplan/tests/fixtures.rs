@@ -1,0 +1,132 @@
+//! One test for each file of `specs/`: `fail/NAME.hp` is refused with exactly the messages of `fail/NAME.stderr`;
+//! `pass/NAME.hp` is accepted, with the warnings of `pass/NAME.stderr` where that file exists, and every comment
+//! line `// OBJECTIVE: VERDICT` of it is what `solve` says. `UPDATE=1` writes the `.stderr` files.
+
+use libtest_mimic::{Arguments, Failed, Trial};
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn main() {
+    let arguments = Arguments::from_args();
+    let mut trials = Vec::new();
+    for path in problems("fail") {
+        trials.push(Trial::test(name("fail", &path), move || refused(&path)));
+    }
+    for path in problems("pass").into_iter().chain(problems(".")) {
+        let checked = path.clone();
+        trials.push(Trial::test(name("pass", &path), move || accepted(&checked)));
+        for (objective, verdict) in verdicts(&path) {
+            let path = path.clone();
+            let name = format!("solve::{}::{objective}", stem(&path));
+            trials.push(Trial::test(name, move || solved(&path, &objective, &verdict)));
+        }
+    }
+    for path in problems("case-studies") {
+        // `check` looks for what is doubtful, which takes some seconds on the larger maps.
+        let large = ["-40", "-60"].iter().any(|size| stem(&path).ends_with(size));
+        let name = name("case-studies", &path);
+        let test = move || if large { understood(&path) } else { accepted(&path) };
+        trials.push(Trial::test(name, test));
+    }
+    libtest_mimic::run(&arguments, trials).exit();
+}
+
+fn specs() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs")
+}
+
+/// The problem files of a folder, named relative to `specs/`, sorted.
+fn problems(folder: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(specs().join(folder)).expect("the specs are part of the repository");
+    let files = entries.map(|entry| PathBuf::from(entry.expect("readable").file_name()));
+    let mut found: Vec<PathBuf> = files
+        .filter(|file| file.extension() == Some(OsStr::new("hp")))
+        .map(|file| if folder == "." { file } else { Path::new(folder).join(file) })
+        .collect();
+    found.sort();
+    found
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+fn name(folder: &str, path: &Path) -> String {
+    format!("{folder}::{}", stem(path))
+}
+
+/// Runs the command in `specs/`, so that messages name files as they are named here.
+fn hyperplan(arguments: &[&OsStr]) -> Result<Output, Failed> {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_hyperplan"));
+    command.current_dir(specs()).args(arguments).env_remove("NO_COLOR");
+    command.output().map_err(|e| format!("cannot run hyperplan: {e}").into())
+}
+
+fn refused(path: &Path) -> Result<(), Failed> {
+    let output = hyperplan(&["check".as_ref(), path.as_os_str()])?;
+    let messages = String::from_utf8(output.stderr)?;
+    if output.status.code() != Some(2) {
+        return Err(format!("{} instead of exit status 2\n{messages}", output.status).into());
+    }
+    compare(path, &messages)
+}
+
+fn accepted(path: &Path) -> Result<(), Failed> {
+    let output = hyperplan(&["check".as_ref(), path.as_os_str()])?;
+    let messages = String::from_utf8(output.stderr)?;
+    if output.status.code() != Some(0) {
+        return Err(format!("{}\n{messages}", output.status).into());
+    }
+    compare(path, &messages)
+}
+
+fn understood(path: &Path) -> Result<(), Failed> {
+    let output = hyperplan(&["horizon".as_ref(), path.as_os_str()])?;
+    if output.status.code() == Some(0) && output.stderr.is_empty() {
+        return Ok(());
+    }
+    Err(format!("{}\n{}", output.status, String::from_utf8_lossy(&output.stderr)).into())
+}
+
+/// Compares messages with the file beside the problem; no file stands for no message.
+fn compare(path: &Path, messages: &str) -> Result<(), Failed> {
+    let expected_path = specs().join(path).with_extension("stderr");
+    let expected = std::fs::read_to_string(&expected_path).unwrap_or_default();
+    if messages == expected {
+        return Ok(());
+    }
+    if std::env::var_os("UPDATE").is_some() {
+        if messages.is_empty() {
+            std::fs::remove_file(&expected_path)?;
+        } else {
+            std::fs::write(&expected_path, messages)?;
+        }
+        return Ok(());
+    }
+    let hint = "UPDATE=1 cargo test --package hyperplan --test fixtures accepts what is new";
+    Err(format!("expected:\n{expected}\nfound:\n{messages}\n{hint}").into())
+}
+
+/// The comment lines `// OBJECTIVE: VERDICT`.
+fn verdicts(path: &Path) -> Vec<(String, String)> {
+    let text = std::fs::read_to_string(specs().join(path)).unwrap_or_default();
+    let pair = |line: &str| {
+        let (objective, verdict) = line.strip_prefix("// ")?.split_once(": ")?;
+        let known = matches!(verdict, "realizable" | "unrealizable");
+        known.then(|| (objective.to_owned(), verdict.to_owned()))
+    };
+    text.lines().filter_map(pair).collect()
+}
+
+fn solved(path: &Path, objective: &str, verdict: &str) -> Result<(), Failed> {
+    let arguments = ["solve", "--quiet", "--objective", objective].map(OsStr::new);
+    let output = hyperplan(&[&arguments[..], &[path.as_os_str()]].concat())?;
+    let found = String::from_utf8(output.stdout)?;
+    let status = if verdict == "realizable" { 0 } else { 1 };
+    if found.trim_end() == format!("{objective}: {verdict}") && output.status.code() == Some(status) {
+        return Ok(());
+    }
+    let messages = String::from_utf8_lossy(&output.stderr).into_owned();
+    Err(format!("expected {verdict}, found {found}{}\n{messages}", output.status).into())
+}

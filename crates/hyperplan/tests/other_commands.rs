@@ -1,0 +1,87 @@
+//! `horizon`, `check`, `emit`, `plot`, `solvers`, `templates`.
+
+mod common;
+
+use common::{hyperplan, text};
+
+#[test]
+fn horizon_explains_itself() {
+    let run = hyperplan(&["horizon", "rooms.hp", "--objective", "sp"]);
+    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
+    assert!(run.stdout.starts_with("sp\n  p  6 steps\n"), "{}", run.stdout);
+    assert!(run.stdout.contains("q  5 steps (the paper's rules: 6)"), "{}", run.stdout);
+    assert!(run.stdout.contains("!goal[q] U[0,T] goal[p]"), "{}", run.stdout);
+}
+
+#[test]
+fn check_counts() {
+    let run = hyperplan(&["check", "case-studies/iso-10.hp"]);
+    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
+    assert_eq!(run.stdout, "case-studies/iso-10.hp: 1 system, 1 objective, no warnings\n");
+}
+
+#[test]
+fn check_as_json() {
+    let run = hyperplan(&["check", "fail/unknown-label.hp", "--format", "json"]);
+    assert_eq!(run.status, 2);
+    let report = &run.json()[0];
+    assert_eq!((&report["errors"], &report["warnings"]), (&1.into(), &0.into()));
+    let error = &report["diagnostics"][0];
+    assert_eq!(error["severity"], "error");
+    assert_eq!(error["file"], "fail/unknown-label.hp");
+    assert_eq!((&error["line"], &error["column"]), (&13.into(), &31.into()));
+}
+
+#[test]
+fn emit_writes_smtlib() {
+    let run = hyperplan(&["emit", "rooms.hp", "--objective", "cso"]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    assert!(run.stdout.contains("(set-logic ") && run.stdout.contains("(check-sat)"), "{}", run.stdout);
+    let run = hyperplan(&["emit", "rooms.hp", "--objective", "all"]);
+    assert_eq!((run.status, run.stdout.as_str()), (2, ""));
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let run = hyperplan(&["emit", "rooms.hp", "--objective", "all", "-o", text(folder.path())]);
+    assert_eq!((run.status, run.stdout.as_str()), (0, ""), "{}", run.stderr);
+    for objective in ["sp", "isr", "ar", "iso", "cso"] {
+        let file = folder.path().join(format!("{objective}.smt2"));
+        assert!(std::fs::read_to_string(file).expect("written").contains("(check-sat)"));
+    }
+}
+
+#[test]
+fn plot_draws_the_bare_map() {
+    let run = hyperplan(&["plot", "rooms.hp"]);
+    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
+    assert!(run.stdout.starts_with("1  .  G  G\n0  S  s  .\n   0  1  2\ns starts\n"), "{}", run.stdout);
+    let run = hyperplan(&["plot", "pass/enumerations.hp"]);
+    assert_eq!((run.status, run.stdout.as_str()), (2, ""));
+    assert!(run.stderr.contains("cannot be drawn"), "{}", run.stderr);
+}
+
+#[test]
+fn solvers_lists_the_embedded_one() {
+    let run = hyperplan(&["solvers"]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    assert!(run.stdout.contains("builtin"), "{}", run.stdout);
+}
+
+#[test]
+fn templates_shows_the_prelude() {
+    let run = hyperplan(&["templates"]);
+    assert_eq!(run.status, 0);
+    for name in [
+        "shortest_path",
+        "longest_path",
+        "initial_state_robust",
+        "action_robust",
+        "initial_state_opaque",
+        "current_state_opaque",
+    ] {
+        assert!(run.stdout.contains(&format!("template {name}(")), "{name}");
+        let one = hyperplan(&["templates", name]);
+        assert_eq!(one.status, 0, "{}", one.stderr);
+        assert_eq!(one.stdout.matches("template ").count(), 1, "{}", one.stdout);
+        assert!(one.stdout.starts_with("//"), "{}", one.stdout);
+    }
+    assert_eq!(hyperplan(&["templates", "quickest_path"]).status, 2);
+}

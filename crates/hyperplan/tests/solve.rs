@@ -1,0 +1,223 @@
+//! `hyperplan solve`: verdicts, formats, exit statuses, files.
+
+#![allow(clippy::print_stderr, reason = "a skipped test says so")]
+
+mod common;
+
+use common::{command, hyperplan, text};
+use std::io::{BufRead, BufReader};
+use std::process::Stdio;
+
+#[test]
+fn prints_a_verified_strategy() {
+    let run = hyperplan(&["solve", "rooms.hp", "--objective", "sp"]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    assert!(run.stdout.starts_with("sp: realizable\nhorizon: p 6, q 5\n"), "{}", run.stdout);
+    assert!(run.stdout.contains(", absorbed after 2 steps\n"), "{}", run.stdout);
+    assert!(run.stdout.contains("\nverified by search\n"), "{}", run.stdout);
+}
+
+#[test]
+fn prints_the_promised_json() {
+    let run = hyperplan(&["solve", "rooms.hp", "--objective", "sp", "--format", "json"]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    // The order of the fields is part of the promise.
+    let fields =
+        ["file", "objective", "verdict", "reason", "horizon", "witness", "verified", "solver", "quantifiers"];
+    let places: Vec<Option<usize>> = fields.iter().map(|f| run.stdout.find(&format!("\"{f}\":"))).collect();
+    assert!(places.iter().all(Option::is_some) && places.is_sorted(), "{}", run.stdout);
+    let [answer] = &run.json()[..] else { panic!("one objective, one line") };
+    assert_eq!(answer["file"], "rooms.hp");
+    assert_eq!(answer["objective"], "sp");
+    assert_eq!(answer["verdict"], "realizable");
+    assert_eq!(answer["reason"], serde_json::Value::Null);
+    assert_eq!(answer["horizon"], serde_json::json!({"p": 6, "q": 5}));
+    assert_eq!(answer["verified"], "by-search");
+    assert_eq!(answer["solver"]["name"], "builtin");
+    let [path] = answer["witness"].as_array().expect("a witness").as_slice() else { panic!("one path") };
+    assert_eq!((&path["path"], &path["system"]), (&"p".into(), &"Rooms".into()));
+    assert_eq!(path["actions"].as_array().map(Vec::len), Some(6));
+    assert_eq!(path["states"].as_array().map(Vec::len), Some(7));
+    assert_eq!(path["states"][0], serde_json::json!({"x": 0, "y": 0}));
+    for stage in ["read", "encode", "solve", "verify", "total"] {
+        assert!(answer["seconds"][stage].is_number(), "{stage}");
+    }
+}
+
+#[test]
+fn says_no_with_status_1() {
+    let run = hyperplan(&["solve", "rooms.hp", "--objective", "sp", "--set", "T=1"]);
+    assert_eq!((run.status, run.stderr.as_str()), (1, ""));
+    assert!(run.stdout.starts_with("sp: unrealizable\n"), "{}", run.stdout);
+}
+
+#[test]
+fn several_objectives_need_a_choice() {
+    let run = hyperplan(&["solve", "rooms.hp"]);
+    assert_eq!((run.status, run.stdout.as_str()), (2, ""));
+    assert!(
+        run.stderr.contains("choose one of sp, isr, ar, iso, cso with --objective NAME"),
+        "{}",
+        run.stderr
+    );
+    let run = hyperplan(&["solve", "rooms.hp", "--objective", "spp"]);
+    assert_eq!(run.status, 2);
+    assert!(run.stderr.contains("no objective `spp`"), "{}", run.stderr);
+}
+
+#[test]
+fn all_objectives_in_turn_and_the_largest_status() {
+    let run = hyperplan(&["solve", "rooms.hp", "--objective", "all", "--format", "json", "--set", "T=3"]);
+    let verdicts: Vec<_> =
+        run.json().iter().map(|a| (a["objective"].clone(), a["verdict"].clone())).collect();
+    let expected = [
+        ("sp", "realizable"),
+        ("isr", "realizable"),
+        ("ar", "unrealizable"),
+        ("iso", "realizable"),
+        ("cso", "realizable"),
+    ];
+    assert_eq!(verdicts, expected.map(|(o, v)| (o.into(), v.into())));
+    assert_eq!(run.status, 1);
+}
+
+#[test]
+fn the_trap_of_a_longer_horizon() {
+    let run = hyperplan(&["solve", "case-studies/sp-10.hp", "--set", "T=30", "--format", "json"]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    let answer = &run.json()[0];
+    let states = answer["witness"][0]["states"].as_array().expect("states");
+    let goal = serde_json::json!({"x": 7, "y": 5});
+    assert_eq!(states.iter().position(|s| *s == goal), Some(16));
+}
+
+#[test]
+fn every_quantifier_mode_and_representation() {
+    for (objective, quantifiers) in [("isr", "auto"), ("isr", "cegis"), ("iso", "expand")] {
+        for states in ["auto", "onehot", "bitvec"] {
+            let options = ["--objective", objective, "--quantifiers", quantifiers, "--states", states];
+            let run = hyperplan(&[&["solve", "rooms.hp", "--quiet"], &options[..]].concat());
+            let expected = format!("{objective}: realizable\n");
+            assert_eq!((run.stdout, run.status), (expected, 0), "{options:?} {}", run.stderr);
+        }
+    }
+}
+
+#[test]
+fn what_is_not_supported_is_bad_usage() {
+    for states in ["int", "enum"] {
+        let run = hyperplan(&["solve", "rooms.hp", "--objective", "sp", "--states", states]);
+        assert_eq!((run.status, run.stdout.as_str()), (2, ""));
+        assert!(run.stderr.contains("not supported yet"), "{}", run.stderr);
+    }
+}
+
+#[test]
+fn saves_and_draws() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (saved, drawn) = (folder.path().join("answer.json"), folder.path().join("map.svg"));
+    let files = ["--save", text(&saved), "--plot", text(&drawn)];
+    let run = hyperplan(&[&["solve", "case-studies/iso-10.hp"], &files[..]].concat());
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    let saved = std::fs::read_to_string(saved).expect("saved");
+    let answer: serde_json::Value = serde_json::from_str(&saved).expect("one JSON object");
+    assert_eq!(answer["witness"].as_array().map(Vec::len), Some(2));
+    let drawn = std::fs::read_to_string(drawn).expect("drawn");
+    assert!(drawn.starts_with("<svg") && drawn.matches("<polyline").count() == 2, "{drawn}");
+}
+
+#[test]
+fn files_that_cannot_be_written_are_refused_before_the_work() {
+    for option in ["--save", "--plot"] {
+        let run = hyperplan(&["solve", "case-studies/ar-60.hp", option, "no/such/folder/file.svg"]);
+        assert_eq!((run.status, run.stdout.as_str()), (2, ""), "{option}");
+        assert!(run.stderr.contains("there is no directory no/such/folder"), "{}", run.stderr);
+    }
+    let run = hyperplan(&["solve", "rooms.hp", "--objective", "sp", "--plot", "map.png"]);
+    assert_eq!(run.status, 2);
+    assert!(run.stderr.contains("only .svg and .txt are supported"), "{}", run.stderr);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_an_error() {
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("Linux has it");
+    let output = command(&["solve", "rooms.hp", "--objective", "sp"]).stdout(full).output().expect("runs");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("cannot write standard output"));
+}
+
+#[test]
+fn a_closed_pipe_ends_quietly() {
+    let mut child = command(&["solve", "rooms.hp", "--objective", "all"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("runs");
+    let mut first = String::new();
+    let pipe = child.stdout.take().expect("piped");
+    BufReader::new(pipe).read_line(&mut first).expect("readable");
+    assert_eq!(first, "sp: realizable\n");
+    let output = child.wait_with_output().expect("ends");
+    assert_eq!((output.status.code(), String::from_utf8_lossy(&output.stderr).as_ref()), (Some(0), ""));
+}
+
+#[test]
+fn time_runs_out() {
+    let run = hyperplan(&["solve", "case-studies/ar-60.hp", "--timeout", "0.05", "--format", "json"]);
+    assert_eq!(run.status, 3, "{}", run.stderr);
+    assert_eq!(run.json()[0]["verdict"], "unknown");
+    let run = hyperplan(&["solve", "rooms.hp", "--timeout", "-1"]);
+    assert_eq!(run.status, 2);
+}
+
+#[test]
+fn a_missing_solver_is_named() {
+    let run = hyperplan(&["solve", "rooms.hp", "--objective", "sp", "--solver", "/no/such/solver"]);
+    assert_eq!((run.status, run.stdout.as_str()), (4, ""), "{}", run.stderr);
+    assert!(run.stderr.contains("/no/such/solver"), "{}", run.stderr);
+}
+
+#[test]
+fn keeps_queries() {
+    if !solver_is_there("z3") {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let queries = folder.path().join("queries");
+    let options = ["--objective", "sp", "--solver", "z3", "--queries", text(&queries)];
+    let run = hyperplan(&[&["solve", "rooms.hp"], &options[..]].concat());
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    let kept = std::fs::read_dir(&queries).expect("made").count();
+    assert!(kept > 0);
+}
+
+#[test]
+fn external_solvers_agree() {
+    for solver in ["z3", "cvc5", "yices"] {
+        if !solver_is_there(solver) {
+            continue;
+        }
+        for (horizon, verdict, status) in [("T=2", "realizable", 0), ("T=1", "unrealizable", 1)] {
+            let options = ["--objective", "sp", "--solver", solver, "--quiet", "--set", horizon];
+            let run = hyperplan(&[&["solve", "rooms.hp"], &options[..]].concat());
+            assert_eq!(
+                (run.stdout, run.status),
+                (format!("sp: {verdict}\n"), status),
+                "{solver}: {}",
+                run.stderr
+            );
+        }
+    }
+}
+
+/// Whether the solver is installed; a test without its solver says so, or fails where solvers are required.
+fn solver_is_there(name: &str) -> bool {
+    let found = hyperplan(&["solvers", "--format", "json"]).json();
+    let there = found.iter().any(|solver| solver["name"] == name && solver["path"].is_string());
+    if !there {
+        assert!(std::env::var_os("HYPERPLAN_REQUIRE_SOLVERS").is_none(), "{name} is required");
+        eprintln!("{name} is missing: skipped");
+    }
+    there
+}

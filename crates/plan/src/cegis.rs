@@ -1,0 +1,243 @@
+//! Counterexample-guided search over any quantifier prefix.
+//!
+//! The player of a block of paths (the one who wants the formula at a given truth value) looks for paths of its own
+//! block that win against the *instances* found so far. Whether a candidate really wins is asked of the other
+//! player, recursively, with the candidate fixed. A counterexample becomes an instance: the other player's block
+//! defined by inputs in terms of the paths before it, the condition that it is a path as a guard, and fresh copies
+//! of the player's own next block. The copies may again leave a block of the other player open; such an instance is
+//! one more *game*, checked and refined like the first.
+//!
+//! Every instance is implied by the objective, so "no candidate" is right. Under the candidate that produced it, an
+//! instance evaluates to the counterexample, so that candidate does not come back; over finite systems there are
+//! finitely many, and the search ends.
+
+use crate::oracle::{Dialogue, Oracle, Stop};
+use hyperplan_encode::{Encoder, Env, Instance, Known, Query};
+use hyperplan_problem::PathId;
+use hyperplan_smt::{Model, Term};
+
+/// Counterexamples asked for in one round.
+const PER_ROUND: usize = 8;
+
+/// The paths of the leading blocks that are known, by path variable.
+pub(crate) type Assignment = Vec<Option<Known>>;
+
+pub(crate) struct Cegis<'s, 'a, 'c> {
+    pub(crate) encoder: &'s Encoder<'a>,
+    pub(crate) oracle: &'s mut Oracle<'c>,
+    /// The blocks of the quantifier prefix, outermost first.
+    pub(crate) blocks: &'s [Vec<PathId>],
+    /// Rounds of the outermost search.
+    pub(crate) rounds: u32,
+}
+
+/// An instance of the formula up to a block of the other player.
+#[derive(Clone)]
+struct Game {
+    env: Env,
+    /// How each path of `env` is known once a model is.
+    recipes: Vec<Option<Recipe>>,
+    /// When the instance counts: its paths are paths.
+    guard: Term,
+    /// The next block, the other player's.
+    level: usize,
+}
+
+#[derive(Clone)]
+enum Recipe {
+    Declared,
+    Instance(Instance),
+}
+
+/// One block's search: the query, its solver, and the games that a candidate has to win.
+struct Round<'e, 'a> {
+    query: Query<'e, 'a>,
+    dialogue: Dialogue,
+    /// The block itself, over the paths known.
+    first: Game,
+    games: Vec<Game>,
+    want: bool,
+}
+
+impl<'s, 'a> Cegis<'s, 'a, '_> {
+    /// Paths of the block at `level` with which the formula gets the value `want` whatever the later blocks of the
+    /// other player are; up to `many` different answers where no block follows, else at most one. Empty: none.
+    /// Each answer has the paths known and those of the block.
+    pub(crate) fn find(
+        &mut self,
+        level: usize,
+        known: &Assignment,
+        want: bool,
+        many: usize,
+    ) -> Result<Vec<Assignment>, Stop> {
+        let last = level + 1 == self.blocks.len();
+        let mut round = self.start(level, known, want, !last || many > 1)?;
+        let mut found = Vec::new();
+        loop {
+            if level == 0 {
+                self.rounds += 1;
+            }
+            if !self.oracle.check(&mut round.dialogue, &round.query.script)? {
+                return Ok(found);
+            }
+            let symbols = round.symbols();
+            let model = self.oracle.model(&mut round.dialogue, &round.query.script, symbols)?;
+            // The block's own paths are declared, so they are paths in every model.
+            let candidate =
+                self.assignment(&round, &round.first, known, &model)?.ok_or_else(|| self.no_path(&round))?;
+            if !last {
+                if self.refine(&mut round, known, &model)? {
+                    continue;
+                }
+                return Ok(vec![candidate]);
+            }
+            let more = self.exclude(&mut round, level, &candidate);
+            found.push(candidate);
+            if found.len() >= many || !more {
+                return Ok(found);
+            }
+        }
+    }
+
+    /// The query of a block: its paths, and the formula or the game against the next block.
+    fn start(
+        &mut self,
+        level: usize,
+        known: &Assignment,
+        want: bool,
+        incremental: bool,
+    ) -> Result<Round<'s, 'a>, Stop> {
+        let dialogue = self.oracle.open(false, incremental)?;
+        let encoder = self.encoder;
+        let mut query = Query::new(encoder, known);
+        let mut env = query.empty_env();
+        let mut recipes = vec![None; env.len()];
+        for (at, path) in known.iter().enumerate() {
+            if let Some(path) = path {
+                env[at] = Some(query.fix(PathId::from(at), path));
+            }
+        }
+        for &path in &self.blocks[level] {
+            env[usize::from(path)] = Some(query.declare(path, want)?);
+            recipes[usize::from(path)] = Some(Recipe::Declared);
+        }
+        let first = Game { env, recipes, guard: Term::TRUE, level: level + 1 };
+        let mut round = Round { query, dialogue, first: first.clone(), games: Vec::new(), want };
+        round.conclude(self.blocks, first);
+        Ok(round)
+    }
+
+    fn no_path(&self, round: &Round<'_, 'a>) -> Stop {
+        self.oracle.wrong(&round.dialogue, "it describes no path").into()
+    }
+
+    /// The paths of a game under a model; `None` where one of its instances describes no path.
+    fn assignment(
+        &self,
+        round: &Round<'_, 'a>,
+        game: &Game,
+        known: &Assignment,
+        model: &Model,
+    ) -> Result<Option<Assignment>, Stop> {
+        let mut assignment = known.clone();
+        for (at, recipe) in game.recipes.iter().enumerate() {
+            let path = PathId::from(at);
+            match (recipe, &game.env[at]) {
+                (Some(Recipe::Declared), Some(terms)) => {
+                    let decoded = round.query.decode(path, terms, model);
+                    assignment[at] = Some(decoded.ok_or_else(|| self.no_path(round))?);
+                }
+                (Some(Recipe::Instance(instance)), _) => {
+                    let Some(realized) = self.encoder.realize(path, instance, &assignment) else {
+                        return Ok(None);
+                    };
+                    assignment[at] = Some(realized);
+                }
+                _ => {}
+            }
+        }
+        Ok(Some(assignment))
+    }
+
+    /// Lets the other player answer in every game, and adds what it finds. Whether it found anything.
+    fn refine(&mut self, round: &mut Round<'_, 'a>, known: &Assignment, model: &Model) -> Result<bool, Stop> {
+        let mut defeated = false;
+        for at in 0..round.games.len() {
+            let game = round.games[at].clone();
+            let Some(assignment) = self.assignment(round, &game, known, model)? else { continue };
+            for answer in self.find(game.level, &assignment, !round.want, PER_ROUND)? {
+                defeated = true;
+                self.add(round, &game, &answer)?;
+            }
+        }
+        Ok(defeated)
+    }
+
+    /// Adds the instance that a counterexample stands for.
+    fn add(&mut self, round: &mut Round<'_, 'a>, game: &Game, answer: &Assignment) -> Result<(), Stop> {
+        let mut next = game.clone();
+        for &path in &self.blocks[game.level] {
+            let Some(counterexample) = &answer[usize::from(path)] else { continue };
+            let instance = self.encoder.generalize(path, counterexample, answer);
+            let (terms, guard) = round.query.instantiate(path, &instance, &next.env, !round.want)?;
+            next.guard = round.query.script.terms.and2(next.guard, guard);
+            next.env[usize::from(path)] = Some(terms);
+            next.recipes[usize::from(path)] = Some(Recipe::Instance(instance));
+        }
+        next.level += 1;
+        if next.level < self.blocks.len() {
+            for &path in &self.blocks[next.level] {
+                next.env[usize::from(path)] = Some(round.query.declare(path, round.want)?);
+                next.recipes[usize::from(path)] = Some(Recipe::Declared);
+            }
+            next.level += 1;
+        }
+        round.conclude(self.blocks, next);
+        Ok(())
+    }
+
+    /// Asks for an answer that differs from this one in more than what follows from the paths known; whether there
+    /// can be one.
+    fn exclude(&mut self, round: &mut Round<'_, 'a>, level: usize, answer: &Assignment) -> bool {
+        let mut alike = Vec::new();
+        for &path in &self.blocks[level] {
+            if let (Some(own), Some(terms)) =
+                (&answer[usize::from(path)], &round.first.env[usize::from(path)])
+            {
+                let instance = self.encoder.generalize(path, own, answer);
+                alike.push(round.query.resembles(terms, &instance));
+            }
+        }
+        let alike = round.query.script.terms.and(&alike);
+        round.query.script.assert(!alike);
+        alike != Term::TRUE
+    }
+}
+
+impl Round<'_, '_> {
+    /// Demands the formula where all paths are there; else leaves the game open.
+    fn conclude(&mut self, blocks: &[Vec<PathId>], game: Game) {
+        if game.level < blocks.len() {
+            self.games.push(game);
+            return;
+        }
+        self.query.script.section("the formula");
+        let formula = self.query.formula(&game.env).negate_if(!self.want);
+        self.query.script.clause(&[!game.guard, formula]);
+    }
+
+    /// The symbols that describe the paths chosen by the solver, in all games.
+    fn symbols(&self) -> Vec<Term> {
+        let mut symbols = Vec::new();
+        for game in std::iter::once(&self.first).chain(&self.games) {
+            for (path, recipe) in game.env.iter().zip(&game.recipes) {
+                if let (Some(path), Some(Recipe::Declared)) = (path, recipe) {
+                    symbols.extend(path.symbols());
+                }
+            }
+        }
+        symbols.sort_unstable();
+        symbols.dedup();
+        symbols
+    }
+}

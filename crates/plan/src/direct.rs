@@ -1,0 +1,133 @@
+//! One query for the whole objective: with its quantifiers, or expanded.
+
+use crate::oracle::{Oracle, Stop};
+use hyperplan_encode::{Encoder, Env, Error, Known, Query};
+use hyperplan_problem::PathId;
+use hyperplan_smt::{Script, Term};
+
+/// A query whose models are the winning choices of the leading block.
+pub(crate) struct Direct<'e, 'a> {
+    pub(crate) query: Query<'e, 'a>,
+    env: Env,
+}
+
+/// Builds the query with the quantifiers of later blocks inside, the paper's formula (16): a path constraint is a
+/// conjunct under `exists` and an antecedent under `forall`, and only what determines a path is quantified.
+pub(crate) fn keep<'e, 'a>(
+    encoder: &'e Encoder<'a>,
+    blocks: &[Vec<PathId>],
+    want: bool,
+) -> Result<Direct<'e, 'a>, Error> {
+    let mut direct = leading(encoder, blocks, want)?;
+    let mut env = direct.env.clone();
+    // From the outside in the paths are bound, from the inside out the formula is closed.
+    let mut open = Vec::new();
+    for (depth, block) in blocks.iter().enumerate().skip(1) {
+        let own = depth % 2 == 0;
+        for &path in block {
+            let (terms, bound, guard) = direct.query.bind(path, want == own)?;
+            env[usize::from(path)] = Some(terms);
+            open.push((own, bound, guard));
+        }
+    }
+    let mut formula = direct.query.formula(&env).negate_if(!want);
+    let terms = &mut direct.query.script.terms;
+    for (own, bound, guard) in open.into_iter().rev() {
+        formula = if own {
+            let body = terms.and2(guard, formula);
+            terms.exists(&bound, body)
+        } else {
+            let body = terms.implies(guard, formula);
+            terms.forall(&bound, body)
+        };
+    }
+    direct.query.script.section("the formula, with its quantifiers");
+    direct.query.script.assert(formula);
+    Ok(direct)
+}
+
+/// Builds the quantifier-free query: each block of the other player becomes one copy for each of its cases, and each
+/// copy has its own choice of the blocks that follow.
+pub(crate) fn expand<'e, 'a>(
+    encoder: &'e Encoder<'a>,
+    blocks: &[Vec<PathId>],
+    want: bool,
+) -> Result<Direct<'e, 'a>, Error> {
+    let mut direct = leading(encoder, blocks, want)?;
+    let mut copies = vec![(direct.env.clone(), Term::TRUE)];
+    for (depth, block) in blocks.iter().enumerate().skip(1) {
+        for &path in block {
+            let mut next = Vec::new();
+            if depth % 2 == 0 {
+                for (mut env, guard) in copies {
+                    env[usize::from(path)] = Some(direct.query.declare(path, want)?);
+                    next.push((env, guard));
+                }
+            } else {
+                let cases = encoder.cases(path, !want)?;
+                for (env, guard) in copies {
+                    for case in &cases {
+                        let (terms, is_path) = direct.query.instantiate(path, case, &env, !want)?;
+                        let mut env = env.clone();
+                        env[usize::from(path)] = Some(terms);
+                        next.push((env, direct.query.script.terms.and2(guard, is_path)));
+                    }
+                    encoder.allow_cases(path, next.len())?;
+                }
+            }
+            copies = next;
+        }
+    }
+    direct.query.script.section("the formula, once for each case");
+    for (env, guard) in copies {
+        // A case that is impossible asks for nothing.
+        if guard != Term::FALSE {
+            let formula = direct.query.formula(&env).negate_if(!want);
+            direct.query.script.clause(&[!guard, formula]);
+        }
+    }
+    Ok(direct)
+}
+
+fn leading<'e, 'a>(
+    encoder: &'e Encoder<'a>,
+    blocks: &[Vec<PathId>],
+    want: bool,
+) -> Result<Direct<'e, 'a>, Error> {
+    let mut query = Query::new(encoder, &[]);
+    let mut env = query.empty_env();
+    for &path in &blocks[0] {
+        env[usize::from(path)] = Some(query.declare(path, want)?);
+    }
+    Ok(Direct { query, env })
+}
+
+impl Direct<'_, '_> {
+    /// The query alone.
+    pub(crate) fn into_script(self) -> Script {
+        self.query.script
+    }
+
+    /// Asks a solver.
+    pub(crate) fn solve(
+        &self,
+        oracle: &mut Oracle<'_>,
+        quantified: bool,
+    ) -> Result<Option<Vec<Option<Known>>>, Stop> {
+        let mut dialogue = oracle.open(quantified, false)?;
+        let script = &self.query.script;
+        if !oracle.check(&mut dialogue, script)? {
+            return Ok(None);
+        }
+        let wanted: Vec<Term> = self.env.iter().flatten().flat_map(|path| path.symbols()).collect();
+        let model = oracle.model(&mut dialogue, script, wanted)?;
+        let mut known = vec![None; self.env.len()];
+        for (at, path) in self.env.iter().enumerate() {
+            if let Some(path) = path {
+                let decoded = self.query.decode(PathId::from(at), path, &model);
+                known[at] = Some(decoded.ok_or_else(|| oracle.wrong(&dialogue, "it describes no path"))?);
+            }
+        }
+        Ok(Some(known))
+    }
+}

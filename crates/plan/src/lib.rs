@@ -1,0 +1,20 @@
+//! The search for a strategy: what is encoded, what is asked of a solver, and what is made of the answers.
+//!
+//! [`solve`] decides an objective: quantifiers are handed to the solver, expanded into finitely many cases, or
+//! decided by counterexamples; a strategy is verified by `hyperplan-verify`, which shares nothing with the encoding,
+//! before it is returned. [`emit`] gives the query as a benchmark instead. [`lint`] and [`lint_systems`] look for
+//! what is probably not meant.
+
+mod cegis;
+mod config;
+mod direct;
+mod emit;
+mod lint;
+mod oracle;
+mod prepare;
+mod solve;
+
+pub use config::{Config, EmitConfig, Error, Outcome, Quantifiers, Seconds, States, Verdict, Verified};
+pub use emit::{Emitted, emit};
+pub use lint::{lint, lint_systems};
+pub use solve::solve;

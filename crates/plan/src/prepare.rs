@@ -1,0 +1,68 @@
+//! What must be settled before quantifiers are: whether paths exist at all, and whether they can go on.
+
+use crate::oracle::{Oracle, Stop};
+use hyperplan_encode::{Encoder, Query};
+use hyperplan_problem::{Expr, Mode, Node, Objective, PathId, Quantifier};
+
+/// The maximal runs of one quantifier, outermost first.
+pub(crate) fn blocks(objective: &Objective) -> Vec<Vec<PathId>> {
+    let paths: Vec<PathId> = objective.paths.keys().collect();
+    paths
+        .chunk_by(|&a, &b| objective.paths[a].quantifier == objective.paths[b].quantifier)
+        .map(<[PathId]>::to_vec)
+        .collect()
+}
+
+/// In bounded mode a path counts only if it can go on for ever. Where the states were not enumerated, this is known
+/// only if no state at all is a dead end.
+pub(crate) fn no_dead_ends(encoder: &Encoder<'_>, oracle: &mut Oracle<'_>) -> Result<(), Stop> {
+    if encoder.objective.mode != Mode::Bounded {
+        return Ok(());
+    }
+    for path in encoder.objective.paths.keys() {
+        if encoder.graph(path).is_some() {
+            continue;
+        }
+        let script = encoder.stuck(path);
+        let mut dialogue = oracle.open(false, false)?;
+        if oracle.check(&mut dialogue, &script)? {
+            return Err(Stop::Unknown(format!(
+                "system {} is too large to enumerate and has states without transitions, so it is not known which \
+                 paths go on for ever; use `absorb`, or `within K`",
+                encoder.system(path).name
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// The first path variable that has no path to range over: it alone decides the objective.
+pub(crate) fn without_paths(encoder: &Encoder<'_>, oracle: &mut Oracle<'_>) -> Result<Option<PathId>, Stop> {
+    for path in encoder.objective.paths.keys() {
+        let some = match encoder.has_path(path) {
+            Some(known) => known,
+            None => {
+                let mut query = Query::new(encoder, &[]);
+                query.declare(path, true)?;
+                let mut dialogue = oracle.open(false, false)?;
+                oracle.check(&mut dialogue, &query.script)?
+            }
+        };
+        if !some {
+            return Ok(Some(path));
+        }
+    }
+    Ok(None)
+}
+
+/// The objective with its formula decided, as it is when this quantifier ranges over nothing. The formula still reads
+/// what it read, so horizons stay what they were.
+pub(crate) fn decided(objective: &Objective, quantifier: Quantifier) -> Objective {
+    let mut formula = objective.formula.clone();
+    let root = formula.root();
+    let holds = quantifier == Quantifier::Forall;
+    let constant = formula.push(Node::Atom(if holds { Expr::TRUE } else { Expr::FALSE }), objective.span);
+    let parts = vec![root, constant];
+    formula.push(if holds { Node::Or(parts) } else { Node::And(parts) }, objective.span);
+    Objective { formula, ..objective.clone() }
+}

@@ -1,0 +1,184 @@
+//! From an objective to a verified answer.
+
+use crate::cegis::{Assignment, Cegis};
+use crate::config::{Config, Error, Outcome, Quantifiers, Seconds, States, Verdict, Verified};
+use crate::direct;
+use crate::oracle::{Oracle, Stop};
+use crate::prepare::{blocks, decided, no_dead_ends, without_paths};
+use hyperplan_encode::{Encoder, Limits};
+use hyperplan_problem::{Objective, PathId, Problem, Quantifier, Strategy};
+use hyperplan_solver::Spec;
+use hyperplan_verify as verify;
+use std::time::Instant;
+
+/// Decides an objective. A strategy (or counterexample) in the outcome has been verified, unless the configuration
+/// says not to.
+///
+/// # Errors
+/// What is not supported, failures of solvers, and answers that fail verification; being undecided is no error.
+pub fn solve(problem: &Problem, objective: &Objective, config: &Config) -> Result<Outcome, Error> {
+    let start = Instant::now();
+    let encoder = Encoder::new(problem, objective, config.states.wish(), Limits::default())?;
+    let mut oracle = Oracle::new(config);
+    let mut outcome = unknown(objective, &encoder, config);
+    let vacuous = no_dead_ends(&encoder, &mut oracle).and_then(|()| without_paths(&encoder, &mut oracle));
+    let answer = match vacuous {
+        Err(stop) => Err(stop),
+        Ok(None) => search(&encoder, config, &mut oracle, &mut outcome),
+        Ok(Some(path)) => {
+            let var = &objective.paths[path];
+            outcome.notes.push(format!(
+                "system {} has no path for {} to range over, which alone decides the objective",
+                problem.systems[var.system].name, var.name
+            ));
+            let decided = decided(objective, var.quantifier);
+            let encoder = Encoder::new(problem, &decided, config.states.wish(), Limits::default())?;
+            search(&encoder, config, &mut oracle, &mut outcome)
+        }
+    };
+    let total = start.elapsed().as_secs_f64();
+    outcome.seconds =
+        Seconds { encode: (total - oracle.solving).max(0.0), solve: oracle.solving, verify: 0.0 };
+    outcome.solver = oracle.identity();
+    match answer {
+        Err(Stop::Error(error)) => return Err(error),
+        Err(Stop::Unknown(reason)) => {
+            outcome.reason = Some(reason);
+            return Ok(outcome);
+        }
+        Ok(found) => conclude(problem, objective, found.as_ref(), &mut outcome),
+    }
+    if config.verify {
+        let start = Instant::now();
+        confirm(&encoder, config, &mut outcome)?;
+        outcome.seconds.verify = start.elapsed().as_secs_f64();
+    }
+    Ok(outcome)
+}
+
+fn unknown(objective: &Objective, encoder: &Encoder<'_>, config: &Config) -> Outcome {
+    let horizons = hyperplan_horizon::horizons(objective);
+    let quantifiers = match config.quantifiers {
+        // A single block has no quantifiers to decide: its query has none.
+        _ if blocks(objective).len() == 1 => Quantifiers::Expand,
+        Quantifiers::Auto => Quantifiers::Cegis,
+        chosen => chosen,
+    };
+    Outcome {
+        verdict: Verdict::Unknown,
+        reason: None,
+        horizons: horizons.iter_enumerated().map(|(p, h)| h.steps.map(|_| encoder.horizon(p))).collect(),
+        witness: None,
+        verified: None,
+        solver: Oracle::new(config).identity(),
+        quantifiers,
+        states: States::from(encoder.states),
+        iterations: 0,
+        seconds: Seconds::default(),
+        notes: Vec::new(),
+    }
+}
+
+/// The paths of the leading block that decide the objective, if there are some.
+fn search(
+    encoder: &Encoder<'_>,
+    config: &Config,
+    oracle: &mut Oracle<'_>,
+    outcome: &mut Outcome,
+) -> Result<Option<Assignment>, Stop> {
+    let objective = encoder.objective;
+    let blocks = blocks(objective);
+    let want = leading(objective) == Quantifier::Exists;
+    if outcome.quantifiers == Quantifiers::Cegis {
+        let mut cegis = Cegis { encoder, oracle, blocks: &blocks, rounds: 0 };
+        let known = vec![None; objective.paths.len()];
+        let found = cegis.find(0, &known, want, 1);
+        outcome.iterations = cegis.rounds;
+        return Ok(found?.pop());
+    }
+    let quantified = outcome.quantifiers == Quantifiers::Keep;
+    if quantified && config.solver == Spec::Builtin {
+        return Err(Error::Unsupported(
+            "--quantifiers keep needs a solver that decides quantifiers, such as z3, cvc5 or yices; the builtin \
+             solver takes cegis or expand"
+                .into(),
+        )
+        .into());
+    }
+    let query = if quantified {
+        direct::keep(encoder, &blocks, want)
+    } else {
+        direct::expand(encoder, &blocks, want)
+    };
+    outcome.iterations = 1;
+    query?.solve(oracle, quantified)
+}
+
+fn leading(objective: &Objective) -> Quantifier {
+    objective.paths.first().map_or(Quantifier::Exists, |p| p.quantifier)
+}
+
+/// The verdict, and the witness as traces.
+fn conclude(problem: &Problem, objective: &Objective, found: Option<&Assignment>, outcome: &mut Outcome) {
+    let exists = leading(objective) == Quantifier::Exists;
+    outcome.verdict = if found.is_some() == exists { Verdict::Realizable } else { Verdict::Unrealizable };
+    outcome.witness = found.map(|known| {
+        let trace = |path: PathId| {
+            let system = &problem.systems[objective.paths[path].system];
+            known[usize::from(path)].as_ref().map(|known| known.trace(path, system))
+        };
+        Strategy { traces: objective.leading_block().into_iter().filter_map(trace).collect() }
+    });
+}
+
+/// Has the witness checked independently, or, where that is too much to enumerate, by a second query.
+fn confirm(encoder: &Encoder<'_>, config: &Config, outcome: &mut Outcome) -> Result<(), Error> {
+    let Some(strategy) = &outcome.witness else { return Ok(()) };
+    let (problem, objective) = (encoder.problem, encoder.objective);
+    let verdict = verify::check(problem, objective, strategy, &verify::Budget::default())
+        .map_err(|error| Error::Bug(error.to_string()))?;
+    match verdict {
+        verify::Verdict::Holds => outcome.verified = Some(Verified::BySearch),
+        verify::Verdict::Fails(defeat) => {
+            let what = defeat.describe(objective);
+            // If our own encoding agrees with the checker, the solver said something wrong.
+            return Err(match defeated(encoder, config, strategy) {
+                Ok(true) if config.solver != Spec::Builtin => {
+                    Error::WrongModel { solver: outcome.solver.name.clone(), what }
+                }
+                _ => Error::Bug(what),
+            });
+        }
+        verify::Verdict::TooLarge { .. } => match defeated(encoder, config, strategy) {
+            Ok(false) => outcome.verified = Some(Verified::BySolver),
+            Ok(true) => return Err(Error::Bug("a second query defeats it".into())),
+            Err(Stop::Error(error)) => return Err(error),
+            Err(Stop::Unknown(reason)) => {
+                outcome.verdict = Verdict::Unknown;
+                outcome.witness = None;
+                outcome.reason = Some(format!("a strategy was found, but could not be verified: {reason}"));
+            }
+        },
+    }
+    Ok(())
+}
+
+/// Whether the paths after the leading block can defeat the strategy, asked of the embedded solver where there is
+/// one.
+fn defeated(encoder: &Encoder<'_>, config: &Config, strategy: &Strategy) -> Result<bool, Stop> {
+    let objective = encoder.objective;
+    let blocks = blocks(objective);
+    let want = leading(objective) == Quantifier::Exists;
+    let mut known: Assignment = vec![None; objective.paths.len()];
+    for trace in &strategy.traces {
+        known[usize::from(trace.path)] = encoder.known(trace);
+    }
+    if blocks.len() < 2 || strategy.traces.iter().any(|t| known[usize::from(t.path)].is_none()) {
+        // No path at all, or nothing left to choose: the checker's word stands.
+        return Ok(true);
+    }
+    let own = Config { solver: Spec::Builtin, queries: None, ..config.clone() };
+    let mut oracle = Oracle::new(&own);
+    let mut cegis = Cegis { encoder, oracle: &mut oracle, blocks: &blocks, rounds: 0 };
+    Ok(!cegis.find(1, &known, !want, 1)?.is_empty())
+}

@@ -1,0 +1,602 @@
+//! Answers as JSON objects: what `solve --format json` prints and `verify` and `plot` read.
+//!
+//! `docs/answer.schema.json` describes the same objects. Fields stand in the order of the structs; names of
+//! paths, actions and variables are those of the problem file.
+
+use crate::expr::{State, Type, Value};
+use crate::ids::{ActionId, PathId, VarId};
+use crate::objective::Objective;
+use crate::problem::Problem;
+use crate::strategy::{Strategy, Trace};
+use crate::system::System;
+use serde::de::{Error as _, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::fmt;
+use std::marker::PhantomData;
+use thiserror::Error;
+
+/// The answer to one objective.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Answer {
+    /// The problem file, as the user named it.
+    pub file: String,
+    /// The objective.
+    pub objective: String,
+    /// Whether it can be had.
+    pub verdict: Verdict,
+    /// Why not known, or what is remarkable about the answer.
+    pub reason: Option<String>,
+    /// Steps of each path that matter, in the order of quantification; `null` where none does.
+    pub horizon: Ordered<Option<u32>>,
+    /// The paths of the leading block: a plan or a counterexample; `null` where there is none.
+    pub witness: Option<Vec<WitnessPath>>,
+    /// How the witness was checked.
+    pub verified: Option<Verified>,
+    /// Who answered.
+    pub solver: Solver,
+    /// How quantifiers were decided: `keep`, `expand` or `cegis`.
+    pub quantifiers: String,
+    /// How states were represented: `onehot` or `bitvec`.
+    pub states: String,
+    /// Rounds of the counterexample loop; 1 for a single query.
+    pub iterations: u32,
+    /// Wall time of each stage.
+    pub seconds: Seconds,
+}
+
+/// Whether an objective can be had.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// The objective holds.
+    Realizable,
+    /// Its negation holds.
+    Unrealizable,
+    /// Undecided.
+    Unknown,
+}
+
+/// How a witness was checked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verified {
+    /// By the independent checker, exactly.
+    BySearch,
+    /// By a solver, where the checker's search would be too large.
+    BySolver,
+}
+
+/// A solver and its version.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Solver {
+    /// Its name, e.g. `builtin` or `z3`.
+    pub name: String,
+    /// Its version, as it tells.
+    pub version: String,
+}
+
+/// Wall time in seconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Seconds {
+    /// Reading and checking the file.
+    pub read: f64,
+    /// Building queries.
+    pub encode: f64,
+    /// Waiting for the solver.
+    pub solve: f64,
+    /// Checking the witness.
+    pub verify: f64,
+    /// From first to last.
+    pub total: f64,
+}
+
+/// One path of a witness. There is one more state than there are actions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WitnessPath {
+    /// The path variable.
+    pub path: String,
+    /// Its system; may be left out when reading.
+    #[serde(default)]
+    pub system: String,
+    /// The actions taken.
+    pub actions: Vec<String>,
+    /// The states passed, from time 0: the value of each variable.
+    pub states: Vec<Ordered<Scalar>>,
+}
+
+/// The value of a variable.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Scalar {
+    /// A truth value.
+    Bool(bool),
+    /// An integer.
+    Int(i64),
+    /// An enumeration value.
+    Name(String),
+}
+
+impl fmt::Display for Scalar {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Scalar::Bool(b) => b.fmt(f),
+            Scalar::Int(n) => n.fmt(f),
+            Scalar::Name(s) => write!(f, "\"{s}\""),
+        }
+    }
+}
+
+/// The part of an answer that a strategy is read from: other tools need to write no more than this.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct StrategyFile {
+    /// The objective that it is for; may be left out.
+    pub objective: Option<String>,
+    /// What was claimed.
+    pub verdict: Option<Verdict>,
+    /// The paths.
+    #[serde(default)]
+    pub witness: Option<Vec<WitnessPath>>,
+}
+
+impl StrategyFile {
+    /// Reads one JSON object, or several, one after another.
+    ///
+    /// # Errors
+    /// If the text is not such a sequence; the message has line and column.
+    pub fn read_all(text: &str) -> Result<Vec<StrategyFile>, serde_json::Error> {
+        serde_json::Deserializer::from_str(text).into_iter().collect()
+    }
+}
+
+/// A JSON object that keeps its order.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Ordered<V>(pub Vec<(String, V)>);
+
+impl<V> Ordered<V> {
+    /// The value under that key.
+    #[must_use]
+    pub fn get(&self, key: &str) -> Option<&V> {
+        self.0.iter().find(|(k, _)| k == key).map(|(_, v)| v)
+    }
+}
+
+impl<V: Serialize> Serialize for Ordered<V> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(k, v)| (k, v)))
+    }
+}
+
+impl<'de, V: Deserialize<'de>> Deserialize<'de> for Ordered<V> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(OrderedVisitor(PhantomData))
+    }
+}
+
+struct OrderedVisitor<V>(PhantomData<V>);
+
+impl<'de, V: Deserialize<'de>> Visitor<'de> for OrderedVisitor<V> {
+    type Value = Ordered<V>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an object")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+        let mut entries: Vec<(String, V)> = Vec::new();
+        while let Some((key, value)) = map.next_entry::<String, V>()? {
+            if entries.iter().any(|(k, _)| *k == key) {
+                return Err(A::Error::custom(format!("`{key}` is given twice")));
+            }
+            entries.push((key, value));
+        }
+        Ok(Ordered(entries))
+    }
+}
+
+/// Why a witness is none for an objective of a problem. Places are written as in `p, state 3`.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum WitnessError {
+    /// The objective has no path variable of that name.
+    #[error("objective {objective} has no path `{path}`; a strategy for it gives {expected}")]
+    UnknownPath {
+        /// The objective.
+        objective: String,
+        /// What was given.
+        path: String,
+        /// What is expected.
+        expected: String,
+    },
+    /// A path variable of the objective, but not of its leading block.
+    #[error("path {path} is quantified after a change of quantifier; a strategy gives {expected} only")]
+    NotLeading {
+        /// What was given.
+        path: String,
+        /// What is expected.
+        expected: String,
+    },
+    /// A path is given twice.
+    #[error("path {0} is given twice")]
+    RepeatedPath(String),
+    /// A path of the leading block is not given.
+    #[error("path {0} is missing")]
+    MissingPath(String),
+    /// Another system than the path's.
+    #[error("path {path} is one of system {expected}, not of `{found}`")]
+    WrongSystem {
+        /// The path.
+        path: String,
+        /// Its system.
+        expected: String,
+        /// What was given.
+        found: String,
+    },
+    /// States and actions do not fit together.
+    #[error(
+        "path {path} has {actions} actions and {states} states; there must be one more state than actions"
+    )]
+    WrongCount {
+        /// The path.
+        path: String,
+        /// Number of actions.
+        actions: usize,
+        /// Number of states.
+        states: usize,
+    },
+    /// The system has no action of that name.
+    #[error("path {path}, action {time}: system {system} has no action `{action}`{hint}")]
+    UnknownAction {
+        /// The path.
+        path: String,
+        /// The step, from 0.
+        time: usize,
+        /// The path's system.
+        system: String,
+        /// What was given.
+        action: String,
+        /// `; did you mean ...?` or nothing.
+        hint: String,
+    },
+    /// The system has no variable of that name.
+    #[error("path {path}, state {time}: system {system} has no variable `{variable}`{hint}")]
+    UnknownVariable {
+        /// The path.
+        path: String,
+        /// The time.
+        time: usize,
+        /// The path's system.
+        system: String,
+        /// What was given.
+        variable: String,
+        /// `; did you mean ...?` or nothing.
+        hint: String,
+    },
+    /// A variable has no value.
+    #[error("path {path}, state {time}: variable {variable} is missing")]
+    MissingVariable {
+        /// The path.
+        path: String,
+        /// The time.
+        time: usize,
+        /// The variable.
+        variable: String,
+    },
+    /// A variable has a value that is not of its type.
+    #[error("path {path}, state {time}: {variable} is {expected}, not {found}")]
+    WrongType {
+        /// The path.
+        path: String,
+        /// The time.
+        time: usize,
+        /// The variable.
+        variable: String,
+        /// Its type, in words.
+        expected: String,
+        /// What was given.
+        found: String,
+    },
+}
+
+/// A strategy in the names of the problem.
+#[must_use]
+pub fn to_witness(problem: &Problem, objective: &Objective, strategy: &Strategy) -> Vec<WitnessPath> {
+    let one = |trace: &Trace| {
+        let var = &objective.paths[trace.path];
+        let system = &problem.systems[var.system];
+        WitnessPath {
+            path: var.name.clone(),
+            system: system.name.clone(),
+            actions: trace.actions.iter().map(|&a| problem.actions[a].clone()).collect(),
+            states: trace.states.iter().map(|s| write_state(system, s)).collect(),
+        }
+    };
+    strategy.traces.iter().map(one).collect()
+}
+
+/// A state in the names of its system. `crash` appears only where a map's robot has crashed.
+#[must_use]
+pub fn write_state(system: &System, state: &State) -> Ordered<Scalar> {
+    let crash = system.map.as_ref().and_then(|m| m.crash);
+    let entries = system.vars.iter_enumerated().zip(state.iter());
+    let shown = entries.filter(|((id, _), v)| crash != Some(*id) || **v == Value::Bool(true));
+    Ordered(shown.map(|((_, var), v)| (var.name.clone(), write_value(&var.ty, *v))).collect())
+}
+
+fn write_value(ty: &Type, value: Value) -> Scalar {
+    match (value, ty) {
+        (Value::Bool(b), _) => Scalar::Bool(b),
+        (Value::Int(n), _) => Scalar::Int(n),
+        (Value::Enum(i), Type::Enum(names)) => {
+            Scalar::Name(names.get(i as usize).cloned().unwrap_or_else(|| i.to_string()))
+        }
+        (Value::Enum(i), _) => Scalar::Int(i64::from(i)),
+    }
+}
+
+/// The strategy that a witness describes, its traces in the order of the leading block. Whether they are paths of
+/// their systems is for the checker to say.
+///
+/// # Errors
+/// If names, counts or types do not fit the objective.
+pub fn to_strategy(
+    problem: &Problem,
+    objective: &Objective,
+    witness: &[WitnessPath],
+) -> Result<Strategy, WitnessError> {
+    let leading = objective.leading_block();
+    let mut traces: Vec<Trace> = Vec::new();
+    for given in witness {
+        let path = find_path(objective, &leading, &given.path)?;
+        if traces.iter().any(|t| t.path == path) {
+            return Err(WitnessError::RepeatedPath(given.path.clone()));
+        }
+        traces.push(read_trace(problem, &problem.systems[objective.paths[path].system], path, given)?);
+    }
+    if let Some(missing) = leading.iter().find(|p| traces.iter().all(|t| t.path != **p)) {
+        return Err(WitnessError::MissingPath(objective.paths[*missing].name.clone()));
+    }
+    traces.sort_by_key(|t| t.path);
+    Ok(Strategy { traces })
+}
+
+fn find_path(objective: &Objective, leading: &[PathId], name: &str) -> Result<PathId, WitnessError> {
+    let expected = || {
+        let names: Vec<&str> = leading.iter().map(|&p| objective.paths[p].name.as_str()).collect();
+        names.join(", ")
+    };
+    match objective.path(name) {
+        None => Err(WitnessError::UnknownPath {
+            objective: objective.name.clone(),
+            path: name.to_owned(),
+            expected: expected(),
+        }),
+        Some(path) if !leading.contains(&path) => {
+            Err(WitnessError::NotLeading { path: name.to_owned(), expected: expected() })
+        }
+        Some(path) => Ok(path),
+    }
+}
+
+fn read_trace(
+    problem: &Problem,
+    system: &System,
+    path: PathId,
+    given: &WitnessPath,
+) -> Result<Trace, WitnessError> {
+    if !given.system.is_empty() && given.system != system.name {
+        return Err(WitnessError::WrongSystem {
+            path: given.path.clone(),
+            expected: system.name.clone(),
+            found: given.system.clone(),
+        });
+    }
+    if given.states.len() != given.actions.len() + 1 {
+        return Err(WitnessError::WrongCount {
+            path: given.path.clone(),
+            actions: given.actions.len(),
+            states: given.states.len(),
+        });
+    }
+    let actions = given.actions.iter().enumerate();
+    let actions = actions.map(|(t, a)| read_action(problem, system, &given.path, t, a));
+    let states = given.states.iter().enumerate();
+    let states = states.map(|(t, s)| read_state(system, &given.path, t, s));
+    Ok(Trace { path, actions: actions.collect::<Result<_, _>>()?, states: states.collect::<Result<_, _>>()? })
+}
+
+fn read_action(
+    problem: &Problem,
+    system: &System,
+    path: &str,
+    time: usize,
+    name: &str,
+) -> Result<ActionId, WitnessError> {
+    let found = system.actions.iter().copied().find(|&a| problem.actions[a] == name);
+    found.ok_or_else(|| WitnessError::UnknownAction {
+        path: path.to_owned(),
+        time,
+        system: system.name.clone(),
+        action: name.to_owned(),
+        hint: hint(name, system.actions.iter().map(|&a| problem.actions[a].as_str())),
+    })
+}
+
+fn read_state(
+    system: &System,
+    path: &str,
+    time: usize,
+    given: &Ordered<Scalar>,
+) -> Result<State, WitnessError> {
+    if let Some((name, _)) = given.0.iter().find(|(name, _)| system.var(name).is_none()) {
+        return Err(WitnessError::UnknownVariable {
+            path: path.to_owned(),
+            time,
+            system: system.name.clone(),
+            variable: name.clone(),
+            hint: hint(name, system.vars.iter().map(|v| v.name.as_str())),
+        });
+    }
+    let crash: Option<VarId> = system.map.as_ref().and_then(|m| m.crash);
+    let read = |(id, var): (VarId, &crate::system::Var)| match given.get(&var.name) {
+        None if crash == Some(id) => Ok(Value::Bool(false)),
+        None => {
+            Err(WitnessError::MissingVariable { path: path.to_owned(), time, variable: var.name.clone() })
+        }
+        Some(value) => read_value(&var.ty, value).ok_or_else(|| WitnessError::WrongType {
+            path: path.to_owned(),
+            time,
+            variable: var.name.clone(),
+            expected: type_in_words(&var.ty),
+            found: value.to_string(),
+        }),
+    };
+    system.vars.iter_enumerated().map(read).collect()
+}
+
+fn read_value(ty: &Type, value: &Scalar) -> Option<Value> {
+    match (ty, value) {
+        (Type::Bool, Scalar::Bool(b)) => Some(Value::Bool(*b)),
+        (Type::Range { lo, hi }, Scalar::Int(n)) if (lo..=hi).contains(&n) => Some(Value::Int(*n)),
+        (Type::Enum(names), Scalar::Name(name)) => {
+            let index = names.iter().position(|n| n == name)?;
+            u32::try_from(index).ok().map(Value::Enum)
+        }
+        _ => None,
+    }
+}
+
+fn type_in_words(ty: &Type) -> String {
+    match ty {
+        Type::Bool => "true or false".to_owned(),
+        Type::Range { lo, hi } => format!("an integer in {lo}..{hi}"),
+        Type::Enum(names) => format!("one of {}", names.join(", ")),
+    }
+}
+
+fn hint<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
+    let near = known.map(|k| (strsim::damerau_levenshtein(name, k), k)).min();
+    match near {
+        Some((distance, k)) if distance <= 2 && distance < k.chars().count() => {
+            format!("; did you mean `{k}`?")
+        }
+        _ => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::Expr;
+    use crate::objective::{Formula, Mode, Node, PathVar, Quantifier};
+    use crate::system::{Map, Var};
+    use hyperplan_syntax::{SourceId, Span};
+    use typed_index_collections::ti_vec;
+
+    fn example() -> Problem {
+        let span = Span::new(SourceId(0), 0..0);
+        let var = |name: &str, ty| Var { name: name.to_owned(), ty, span };
+        let lights: std::sync::Arc<[String]> = ["red".to_owned(), "green".to_owned()].into();
+        let system = System {
+            name: "Rooms".to_owned(),
+            vars: ti_vec![
+                var("x", Type::Range { lo: 0, hi: 2 }),
+                var("light", Type::Enum(lights)),
+                var("crash", Type::Bool)
+            ],
+            actions: vec![ActionId(0), ActionId(1)],
+            clauses: Vec::new(),
+            init: Expr::TRUE,
+            labels: ti_vec![],
+            absorb: Expr::FALSE,
+            observe: Vec::new(),
+            map: Some(Map {
+                width: 3,
+                height: 1,
+                obstacles: Vec::new(),
+                x: VarId(0),
+                y: VarId(0),
+                crash: Some(VarId(2)),
+            }),
+            span,
+        };
+        let path = |name: &str, quantifier| PathVar {
+            name: name.to_owned(),
+            quantifier,
+            system: crate::ids::SystemId(0),
+            span,
+        };
+        let mut formula = Formula::default();
+        formula.push(Node::Atom(Expr::TRUE), span);
+        let objective = Objective {
+            name: "o".to_owned(),
+            paths: ti_vec![path("p", Quantifier::Exists), path("q", Quantifier::Forall)],
+            mode: Mode::Bounded,
+            formula,
+            span,
+        };
+        Problem {
+            actions: ti_vec!["left".to_owned(), "right".to_owned()],
+            systems: ti_vec![system],
+            objectives: vec![objective],
+        }
+    }
+
+    fn read(problem: &Problem, text: &str) -> Result<Strategy, String> {
+        let files = StrategyFile::read_all(text).map_err(|e| e.to_string())?;
+        let witness = files[0].witness.clone().expect("the test has one");
+        to_strategy(problem, &problem.objectives[0], &witness).map_err(|e| e.to_string())
+    }
+
+    const GOOD: &str = r#"{"witness": [{"path": "p", "actions": ["right"],
+        "states": [{"x": 0, "light": "red"}, {"light": "green", "x": 1, "crash": true}]}]}"#;
+
+    #[test]
+    fn round_trip() {
+        let problem = example();
+        let strategy = read(&problem, GOOD).expect("it fits");
+        let witness = to_witness(&problem, &problem.objectives[0], &strategy);
+        let json = serde_json::to_string(&witness).expect("serializable");
+        assert_eq!(
+            json,
+            r#"[{"path":"p","system":"Rooms","actions":["right"],"states":[{"x":0,"light":"red"},{"x":1,"light":"green","crash":true}]}]"#
+        );
+        assert_eq!(to_strategy(&problem, &problem.objectives[0], &witness), Ok(strategy));
+    }
+
+    #[test]
+    fn what_does_not_fit_is_named() {
+        let problem = example();
+        let with =
+            |from: &str, to: &str| read(&problem, &GOOD.replace(from, to)).expect_err("it does not fit");
+        assert_eq!(with("\"p\"", "\"r\""), "objective o has no path `r`; a strategy for it gives p");
+        assert_eq!(
+            with("\"p\"", "\"q\""),
+            "path q is quantified after a change of quantifier; a strategy gives p only"
+        );
+        assert_eq!(
+            with("[\"right\"]", "[\"rigth\"]"),
+            "path p, action 0: system Rooms has no action `rigth`; did you mean `right`?"
+        );
+        assert_eq!(with("\"x\": 1", "\"x\": 3"), "path p, state 1: x is an integer in 0..2, not 3");
+        assert_eq!(with("\"x\": 1, ", ""), "path p, state 1: variable x is missing");
+        assert_eq!(
+            with("\"green\"", "\"blue\""),
+            "path p, state 1: light is one of red, green, not \"blue\""
+        );
+        assert_eq!(
+            with("[\"right\"]", "[]"),
+            "path p has 0 actions and 2 states; there must be one more state than actions"
+        );
+        assert_eq!(
+            with("\"path\": \"p\"", "\"path\": \"p\", \"system\": \"W\""),
+            "path p is one of system Rooms, not of `W`"
+        );
+        assert!(with("\"x\": 0", "\"x\": 0, \"x\": 1").starts_with("`x` is given twice at line 2"));
+        let (from, to) = (
+            "\"witness\": [",
+            "\"witness\": [{\"path\": \"p\", \"actions\": [], \"states\": [{\"x\": 0, \"light\": \"red\"}]},",
+        );
+        assert_eq!(with(from, to), "path p is given twice");
+        assert_eq!(read(&problem, r#"{"witness": []}"#), Err("path p is missing".to_owned()));
+    }
+}

@@ -1,0 +1,443 @@
+//! Typed things back in the language's syntax, for messages.
+
+use crate::expr::{Comparison, Expr, Leaf, PathLeaf, State, Type, Value};
+use crate::ids::{FormulaId, PathId};
+use crate::objective::{Interval, Node, Objective, Quantifier, TemporalOp};
+use crate::problem::Problem;
+use crate::system::System;
+
+/// Longer texts are cut, with `...` at the end: shared parts could make them exponential.
+const MAX_LENGTH: usize = 4_000;
+
+/// Sets with more members are shortened.
+const MAX_MEMBERS: usize = 12;
+
+/// A part of an objective's formula.
+#[must_use]
+pub fn formula(problem: &Problem, objective: &Objective, id: FormulaId) -> String {
+    let names = PathNames { problem, objective };
+    let mut printer = Printer { out: String::new(), names: &names };
+    printer.formula(objective, id, 0);
+    printer.finish()
+}
+
+/// A whole objective: quantifiers and formula.
+#[must_use]
+pub fn objective(problem: &Problem, objective: &Objective) -> String {
+    let mut out = String::new();
+    for path in &objective.paths {
+        let quantifier = match path.quantifier {
+            Quantifier::Exists => "exists",
+            Quantifier::Forall => "forall",
+        };
+        out += &format!("{quantifier} {}", path.name);
+        if problem.systems.len() > 1 {
+            out += &format!(": {}", problem.systems[path.system].name);
+        }
+        out += ". ";
+    }
+    out + &formula(problem, objective, objective.formula.root())
+}
+
+/// An atom of an objective.
+#[must_use]
+pub fn atom(problem: &Problem, objective: &Objective, e: &Expr<PathLeaf>) -> String {
+    let names = PathNames { problem, objective };
+    let mut printer = Printer { out: String::new(), names: &names };
+    printer.expr(e, 0, None);
+    printer.finish()
+}
+
+/// An expression over the state of a system.
+#[must_use]
+pub fn state_expr(system: &System, e: &Expr<Leaf>) -> String {
+    let mut printer = Printer { out: String::new(), names: system };
+    printer.expr(e, 0, None);
+    printer.finish()
+}
+
+/// A value of a type.
+#[must_use]
+pub fn value(ty: &Type, value: Value) -> String {
+    match (value, ty) {
+        (Value::Bool(b), _) => b.to_string(),
+        (Value::Int(n), _) => n.to_string(),
+        (Value::Enum(index), Type::Enum(values)) => {
+            values.get(index as usize).cloned().unwrap_or_else(|| format!("#{index}"))
+        }
+        (Value::Enum(index), _) => format!("#{index}"),
+    }
+}
+
+/// A state: `(x = 1, y = 2)`; a crash is shown only where it happened.
+#[must_use]
+pub fn state(system: &System, state: &State) -> String {
+    let crash = system.map.as_ref().and_then(|map| map.crash);
+    let shown = system.vars.iter_enumerated().zip(state.iter());
+    let shown = shown.filter(|((id, _), v)| Some(*id) != crash || **v == Value::Bool(true));
+    let parts: Vec<String> =
+        shown.map(|((_, var), v)| format!("{} = {}", var.name, value(&var.ty, *v))).collect();
+    format!("({})", parts.join(", "))
+}
+
+/// How leaves are written, and of which type they are.
+trait Names<L> {
+    fn leaf(&self, leaf: &L) -> String;
+    /// `!leaf`, where that has a form of its own.
+    fn negated(&self, leaf: &L) -> Option<String>;
+    fn ty(&self, leaf: &L) -> Option<&Type>;
+}
+
+impl Names<Leaf> for System {
+    fn leaf(&self, leaf: &Leaf) -> String {
+        match leaf {
+            Leaf::Var(id) => self.vars[*id].name.clone(),
+            Leaf::Label(id) => self.labels[*id].name.clone(),
+        }
+    }
+
+    fn negated(&self, _leaf: &Leaf) -> Option<String> {
+        None
+    }
+
+    fn ty(&self, leaf: &Leaf) -> Option<&Type> {
+        match leaf {
+            Leaf::Var(id) => Some(&self.vars[*id].ty),
+            Leaf::Label(_) => None,
+        }
+    }
+}
+
+struct PathNames<'a> {
+    problem: &'a Problem,
+    objective: &'a Objective,
+}
+
+impl PathNames<'_> {
+    fn path(&self, path: PathId) -> &str {
+        &self.objective.paths[path].name
+    }
+
+    fn system(&self, path: PathId) -> &System {
+        &self.problem.systems[self.objective.paths[path].system]
+    }
+}
+
+impl Names<PathLeaf> for PathNames<'_> {
+    fn leaf(&self, leaf: &PathLeaf) -> String {
+        match leaf {
+            PathLeaf::State(p, leaf) => format!("{}[{}]", self.system(*p).leaf(leaf), self.path(*p)),
+            PathLeaf::Took(p, a) => format!("action[{}] == {}", self.path(*p), self.problem.actions[*a]),
+            PathLeaf::SameAction(p, q) => format!("action[{}] == action[{}]", self.path(*p), self.path(*q)),
+            PathLeaf::SameState(p, q) => format!("state[{}] == state[{}]", self.path(*p), self.path(*q)),
+            PathLeaf::Enabled(p, a) => format!("{} in enabled[{}]", self.problem.actions[*a], self.path(*p)),
+        }
+    }
+
+    fn negated(&self, leaf: &PathLeaf) -> Option<String> {
+        match leaf {
+            PathLeaf::Took(..) | PathLeaf::SameAction(..) | PathLeaf::SameState(..) => {
+                Some(self.leaf(leaf).replacen("==", "!=", 1))
+            }
+            PathLeaf::State(..) | PathLeaf::Enabled(..) => None,
+        }
+    }
+
+    fn ty(&self, leaf: &PathLeaf) -> Option<&Type> {
+        match leaf {
+            PathLeaf::State(p, leaf) => self.system(*p).ty(leaf),
+            _ => None,
+        }
+    }
+}
+
+/// Binding strengths, weakest first; an operand of a weaker form gets parentheses.
+mod level {
+    pub(super) const IFF: u8 = 1;
+    pub(super) const IMPLIES: u8 = 2;
+    pub(super) const OR: u8 = 3;
+    pub(super) const AND: u8 = 4;
+    pub(super) const UNTIL: u8 = 5;
+    pub(super) const UNARY: u8 = 6;
+    pub(super) const COMPARE: u8 = 7;
+    pub(super) const SUM: u8 = 8;
+    pub(super) const PRODUCT: u8 = 9;
+    pub(super) const ATOM: u8 = 10;
+}
+
+struct Printer<'a, N> {
+    out: String,
+    names: &'a N,
+}
+
+impl<N> Printer<'_, N> {
+    fn full(&self) -> bool {
+        self.out.len() >= MAX_LENGTH
+    }
+
+    fn finish(mut self) -> String {
+        if self.full() {
+            let mut end = MAX_LENGTH;
+            while !self.out.is_char_boundary(end) {
+                end -= 1;
+            }
+            self.out.truncate(end);
+            self.out += "...";
+        }
+        self.out
+    }
+
+    /// Runs `f`, in parentheses where what it prints binds more weakly than its place asks.
+    fn at_level(&mut self, own: u8, place: u8, f: impl FnOnce(&mut Self)) {
+        if self.full() {
+            return;
+        }
+        if own < place {
+            self.out.push('(');
+        }
+        f(self);
+        if own < place {
+            self.out.push(')');
+        }
+    }
+
+    /// Operands with a sign between them; `empty` where there is none.
+    fn list<T>(&mut self, items: &[T], sign: &str, empty: &str, mut f: impl FnMut(&mut Self, &T)) {
+        if items.is_empty() {
+            self.out += empty;
+        }
+        for (index, item) in items.iter().enumerate() {
+            if self.full() {
+                return;
+            }
+            if index > 0 {
+                self.out += sign;
+            }
+            f(self, item);
+        }
+    }
+}
+
+impl<N> Printer<'_, N> {
+    fn expr<L>(&mut self, e: &Expr<L>, place: u8, ty: Option<&Type>)
+    where
+        N: Names<L>,
+    {
+        let names = self.names;
+        let own = expr_level(e);
+        self.at_level(own, place, |p| match e {
+            Expr::Const(v) => p.out += &value(ty.unwrap_or(&Type::Bool), *v),
+            Expr::Leaf(leaf) => p.out += &names.leaf(leaf),
+            Expr::Not(a) => p.negation(a),
+            Expr::And(es) => p.list(es, " & ", "true", |p, e| p.expr(e, level::AND + 1, None)),
+            Expr::Or(es) => p.list(es, " | ", "false", |p, e| p.expr(e, level::OR + 1, None)),
+            Expr::Iff(a, b) => p.infix(a, " <-> ", b, level::IFF + 1, None),
+            Expr::Compare(op, a, b) => {
+                let ty = enumeration(names, a).or_else(|| enumeration(names, b));
+                p.infix(a, comparison(*op), b, level::SUM, ty);
+            }
+            Expr::Add(es) => p.sum(es),
+            Expr::Mul(-1, a) => {
+                p.out.push('-');
+                p.expr(a, level::ATOM, None);
+            }
+            Expr::Mul(c, a) => {
+                p.out += &format!("{c} * ");
+                p.expr(a, level::ATOM, None);
+            }
+            Expr::Div(a, c) => {
+                p.expr(a, level::ATOM, None);
+                p.out += &format!(" div {c}");
+            }
+            Expr::Mod(a, c) => {
+                p.expr(a, level::ATOM, None);
+                p.out += &format!(" % {c}");
+            }
+            Expr::If(c, a, b) => {
+                p.out += "if ";
+                p.expr(c, 0, None);
+                p.out += " then ";
+                p.expr(a, 0, ty);
+                p.out += " else ";
+                p.expr(b, 0, ty);
+            }
+            Expr::Member(es, set) => p.member(es, &set.tuples),
+        });
+    }
+
+    fn infix<L>(&mut self, a: &Expr<L>, sign: &str, b: &Expr<L>, place: u8, ty: Option<&Type>)
+    where
+        N: Names<L>,
+    {
+        self.expr(a, place, ty);
+        self.out += sign;
+        self.expr(b, place, ty);
+    }
+
+    fn negation<L>(&mut self, a: &Expr<L>)
+    where
+        N: Names<L>,
+    {
+        if let Expr::Compare(Comparison::Eq, a, b) = a {
+            let ty = enumeration(self.names, a).or_else(|| enumeration(self.names, b));
+            self.infix(a, " != ", b, level::SUM, ty);
+            return;
+        }
+        if let Expr::Leaf(leaf) = a
+            && let Some(negated) = self.names.negated(leaf)
+        {
+            self.out += &negated;
+            return;
+        }
+        self.out.push('!');
+        // `!` takes a comparison whole; parentheses say so to those who do not know.
+        self.expr(a, level::ATOM, None);
+    }
+
+    fn sum<L>(&mut self, es: &[Expr<L>])
+    where
+        N: Names<L>,
+    {
+        if es.is_empty() {
+            self.out.push('0');
+        }
+        for (index, e) in es.iter().enumerate() {
+            let (minus, e) = match e {
+                Expr::Const(Value::Int(n)) if *n < 0 && index > 0 => {
+                    self.out += &format!(" - {}", n.unsigned_abs());
+                    continue;
+                }
+                Expr::Mul(-1, e) if index > 0 => (true, &**e),
+                e => (false, e),
+            };
+            if index > 0 {
+                self.out += if minus { " - " } else { " + " };
+            }
+            self.expr(e, level::PRODUCT, None);
+        }
+    }
+
+    fn member<L>(&mut self, es: &[Expr<L>], tuples: &[Box<[i64]>])
+    where
+        N: Names<L>,
+    {
+        if let [only] = es {
+            self.expr(only, level::SUM, None);
+        } else {
+            self.out.push('(');
+            self.list(es, ", ", "", |p, e| p.expr(e, 0, None));
+            self.out.push(')');
+        }
+        self.out += " in {";
+        let shown = &tuples[..tuples.len().min(MAX_MEMBERS)];
+        self.list(shown, ", ", "", |p, tuple| {
+            let numbers: Vec<String> = tuple.iter().map(i64::to_string).collect();
+            p.out += &match numbers.as_slice() {
+                [only] => only.clone(),
+                numbers => format!("({})", numbers.join(", ")),
+            };
+        });
+        self.out += if shown.len() < tuples.len() { ", ...}" } else { "}" };
+    }
+}
+
+impl Printer<'_, PathNames<'_>> {
+    fn formula(&mut self, objective: &Objective, id: FormulaId, place: u8) {
+        let node = &objective.formula.nodes[id];
+        let own = match node {
+            Node::Atom(e) => {
+                if !self.full() {
+                    self.expr(e, place, None);
+                }
+                return;
+            }
+            Node::Iff(..) => level::IFF,
+            Node::Implies(..) => level::IMPLIES,
+            Node::Or(xs) if xs.len() != 1 => level::OR,
+            Node::And(xs) if xs.len() != 1 => level::AND,
+            Node::Temporal(..) => level::UNTIL,
+            _ => level::UNARY,
+        };
+        self.at_level(own, place, |p| match node {
+            Node::Atom(_) => {}
+            Node::Not(a) => p.not(objective, *a),
+            Node::And(xs) => p.list(xs, " & ", "true", |p, x| p.formula(objective, *x, level::AND + 1)),
+            Node::Or(xs) => p.list(xs, " | ", "false", |p, x| p.formula(objective, *x, level::OR + 1)),
+            Node::Implies(a, b) => p.pair(objective, *a, " -> ", *b, level::IMPLIES),
+            Node::Iff(a, b) => p.pair(objective, *a, " <-> ", *b, level::IFF),
+            Node::Next(a) => p.prefix(objective, "X ", *a),
+            Node::WeakNext(a) => p.prefix(objective, "N ", *a),
+            Node::Finally(i, a) => p.prefix(objective, &format!("F{} ", interval(*i)), *a),
+            Node::Globally(i, a) => p.prefix(objective, &format!("G{} ", interval(*i)), *a),
+            Node::Temporal(op, i, a, b) => {
+                let name = match op {
+                    TemporalOp::Until => "U",
+                    TemporalOp::Release => "R",
+                    TemporalOp::WeakUntil => "W",
+                };
+                p.pair(objective, *a, &format!(" {name}{} ", interval(*i)), *b, level::UNTIL);
+            }
+        });
+    }
+
+    fn not(&mut self, objective: &Objective, a: FormulaId) {
+        if let Node::Atom(e) = &objective.formula.nodes[a] {
+            return self.negation(e);
+        }
+        self.prefix(objective, "!", a);
+    }
+
+    fn prefix(&mut self, objective: &Objective, sign: &str, a: FormulaId) {
+        self.out += sign;
+        self.formula(objective, a, level::UNARY);
+    }
+
+    fn pair(&mut self, objective: &Objective, a: FormulaId, sign: &str, b: FormulaId, own: u8) {
+        self.formula(objective, a, own + 1);
+        self.out += sign;
+        self.formula(objective, b, own + 1);
+    }
+}
+
+fn expr_level<L>(e: &Expr<L>) -> u8 {
+    match e {
+        Expr::Const(Value::Int(n)) if *n < 0 => level::SUM,
+        Expr::Const(_) | Expr::Leaf(_) => level::ATOM,
+        Expr::Not(_) => level::UNARY,
+        Expr::And(_) => level::AND,
+        Expr::Or(_) => level::OR,
+        Expr::Iff(..) => level::IFF,
+        Expr::Compare(..) | Expr::Member(..) => level::COMPARE,
+        Expr::Add(_) => level::SUM,
+        Expr::Mul(..) | Expr::Div(..) | Expr::Mod(..) => level::PRODUCT,
+        Expr::If(..) => 0,
+    }
+}
+
+fn comparison(op: Comparison) -> &'static str {
+    match op {
+        Comparison::Eq => " == ",
+        Comparison::Lt => " < ",
+        Comparison::Le => " <= ",
+    }
+}
+
+/// The enumeration that an operand belongs to, if it says so.
+fn enumeration<'a, L>(names: &'a impl Names<L>, e: &Expr<L>) -> Option<&'a Type> {
+    let mut at = e;
+    loop {
+        match at {
+            Expr::Leaf(leaf) => return names.ty(leaf).filter(|ty| matches!(ty, Type::Enum(_))),
+            // Either branch may be a constant; the first that is none says it.
+            Expr::If(_, a, b) => at = if matches!(**a, Expr::Const(_)) { b } else { a },
+            _ => return None,
+        }
+    }
+}
+
+fn interval(interval: Interval) -> String {
+    match interval.hi {
+        Some(hi) => format!("[{},{hi}]", interval.lo),
+        None => String::new(),
+    }
+}

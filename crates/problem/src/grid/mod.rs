@@ -1,0 +1,27 @@
+//! Maps: reading them, and turning their rules into ordinary transition clauses.
+
+mod moves;
+pub(crate) mod pgm;
+mod rows;
+mod system;
+
+pub(crate) use moves::{MOVES, Move, Rule};
+pub(crate) use rows::{Format, Legend, Meaning, Row, from_rows};
+pub(crate) use system::{Rules, base};
+
+/// Most cells that a map may have.
+pub(crate) const MAX_CELLS: usize = 4_000_000;
+
+/// A cell: column from the left, row from the bottom.
+pub(crate) type Cell = (u32, u32);
+
+/// A map as read, in the convention of the language: the last text line is row 0.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct GridMap {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    /// Sorted, without repetition.
+    pub(crate) obstacles: Vec<Cell>,
+    /// Labels that letters carry, in order of first mention; each with its cells, sorted.
+    pub(crate) labels: Vec<(String, Vec<Cell>)>,
+}

@@ -1,0 +1,22 @@
+//! Typed systems and objectives: what a problem file means, before anything is computed from it.
+
+pub mod answer;
+pub mod display;
+mod expr;
+mod grid;
+mod ids;
+pub mod lower;
+mod objective;
+pub mod prelude;
+#[allow(clippy::module_inception)]
+mod problem;
+mod strategy;
+mod system;
+
+pub use expr::{Comparison, Expr, Leaf, PathLeaf, State, TupleSet, Type, Value};
+pub use ids::{ActionId, FormulaId, LabelId, PathId, SystemId, VarId};
+pub use lower::{Loader, Lowered, NoFiles, Overrides, lower, read};
+pub use objective::{Formula, Interval, Mode, Node, Objective, PathVar, Quantifier, TemporalOp};
+pub use problem::Problem;
+pub use strategy::{Strategy, Trace};
+pub use system::{Clause, Label, Map, System, Update, Var};

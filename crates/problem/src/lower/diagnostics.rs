@@ -1,0 +1,67 @@
+//! Collecting diagnostics without saying anything twice.
+
+use hyperplan_syntax::{Diagnostic, Span, similar};
+use rustc_hash::FxHashSet;
+
+/// What was found wrong so far, and the uses (of definitions, of templates) that are being expanded.
+#[derive(Debug, Default)]
+pub(crate) struct Diagnostics {
+    list: Vec<Diagnostic>,
+    seen: FxHashSet<(Option<Span>, &'static str, String)>,
+    uses: Vec<(Span, String)>,
+}
+
+impl Diagnostics {
+    /// Adds a message, unless the same one was added for the same place already: a definition that is used twice
+    /// has its mistakes reported once.
+    pub(crate) fn push(&mut self, mut diagnostic: Diagnostic) {
+        if !self.seen.insert((diagnostic.span, diagnostic.code, diagnostic.message.clone())) {
+            return;
+        }
+        // The innermost use and the outermost one: those between rarely help.
+        let mut uses = self.uses.iter().rev();
+        for (span, words) in uses.next().into_iter().chain(uses.next_back()) {
+            if Some(*span) != diagnostic.span {
+                diagnostic = diagnostic.with_related(*span, words.clone());
+            }
+        }
+        self.list.push(diagnostic);
+    }
+
+    /// Enters the text of a definition or template that is used at `span`.
+    pub(crate) fn enter_use(&mut self, span: Span, words: String) {
+        self.uses.push((span, words));
+    }
+
+    /// Leaves it.
+    pub(crate) fn leave_use(&mut self) {
+        self.uses.pop();
+    }
+
+    /// Whether there is an error among them.
+    pub(crate) fn any_error(&self) -> bool {
+        self.list.iter().any(Diagnostic::is_error)
+    }
+
+    /// Everything, in the order found.
+    pub(crate) fn into_list(self) -> Vec<Diagnostic> {
+        self.list
+    }
+}
+
+/// Completes a message about an unknown name by the one that was probably meant, or by those there are.
+pub(crate) fn suggest<'a>(
+    diagnostic: Diagnostic,
+    name: &str,
+    candidates: impl IntoIterator<Item = &'a str>,
+) -> Diagnostic {
+    let candidates: Vec<&str> = candidates.into_iter().collect();
+    if let Some(meant) = similar(name, candidates.iter().copied()) {
+        return diagnostic.with_help(format!("did you mean `{meant}`?"));
+    }
+    if candidates.is_empty() || candidates.len() > 12 {
+        return diagnostic;
+    }
+    let list: Vec<String> = candidates.iter().map(|c| format!("`{c}`")).collect();
+    diagnostic.with_help(format!("known here: {}", list.join(", ")))
+}

@@ -1,0 +1,384 @@
+//! Typing expressions, whatever their names stand for: constants, states and paths share this.
+
+use super::diagnostics::Diagnostics;
+use super::limits::Limits;
+use super::sets::membership;
+use super::typed::{self, Bounds, EnumType, LIMIT, Typed, braces, known_int};
+use crate::expr::{Comparison, Expr, Value};
+use hyperplan_syntax::ast::{self, ArithOp, CompareOp, ExprKind, Ident};
+use hyperplan_syntax::{Diagnostic, Span};
+
+/// What names stand for where an expression is written.
+pub(crate) trait Context {
+    /// What expressions read here.
+    type Leaf: Clone;
+
+    /// Where messages go.
+    fn diagnostics(&mut self) -> &mut Diagnostics;
+
+    /// Starts a node; `false` where a limit is reached.
+    fn enter(&mut self, span: Span) -> bool;
+
+    /// Ends a node.
+    fn leave(&mut self);
+
+    /// A variable, label, constant or parameter; `None` if there is none of that name.
+    fn resolve(&mut self, name: &str, span: Span) -> Option<Typed<Self::Leaf>>;
+
+    /// Whether some enumeration in reach has a value of that name.
+    fn is_enum_value(&self, name: &str) -> bool;
+
+    /// The message about a name that stands for nothing here.
+    fn unknown(&mut self, name: &str, span: Span) -> Diagnostic;
+
+    /// `NAME[PATHS]`
+    fn at(&mut self, name: &Ident, paths: &[Ident], span: Span) -> Typed<Self::Leaf> {
+        let _ = paths;
+        let message = format!("`{}` of a path: there are no paths here", name.name);
+        self.error(Diagnostic::error("misplaced-path", span, message).with_help("paths belong to objectives"))
+    }
+
+    /// `NAME(ARGS)`
+    fn call(
+        &mut self,
+        name: &Ident,
+        args: &[Ident],
+        hint: Option<&EnumType>,
+        span: Span,
+    ) -> Typed<Self::Leaf> {
+        let _ = (args, hint);
+        let message =
+            format!("`{}(...)` is a use of a definition, and those belong to objectives", name.name);
+        self.error(Diagnostic::error("misplaced-use", span, message))
+    }
+
+    /// Comparisons of things that are no values: actions, whole states, observations.
+    fn compare_special(
+        &mut self,
+        op: CompareOp,
+        a: &ast::Expr,
+        b: &ast::Expr,
+        span: Span,
+    ) -> Option<Typed<Self::Leaf>> {
+        let _ = (op, a, b, span);
+        None
+    }
+
+    /// Membership of things that are no values.
+    fn member_special(
+        &mut self,
+        element: &ast::Expr,
+        set: &ast::Set,
+        span: Span,
+    ) -> Option<Typed<Self::Leaf>> {
+        let _ = (element, set, span);
+        None
+    }
+
+    /// The message about a temporal operator inside an expression.
+    fn temporal(&self, span: Span) -> Diagnostic {
+        Diagnostic::error("misplaced-temporal", span, "a temporal operator cannot stand here")
+            .with_help("temporal operators belong to objectives")
+    }
+
+    /// Reports and poisons.
+    fn error(&mut self, diagnostic: Diagnostic) -> Typed<Self::Leaf> {
+        self.diagnostics().push(diagnostic);
+        Typed::Poison
+    }
+}
+
+/// The state that every context needs for [`Context::enter`].
+pub(crate) fn enter(limits: &mut Limits, diagnostics: &mut Diagnostics, span: Span) -> bool {
+    limits.enter(span, diagnostics)
+}
+
+/// Types an expression. `hint` is the enumeration that is expected, if one is: its values need no declaration.
+pub(crate) fn typed<C: Context>(cx: &mut C, e: &ast::Expr, hint: Option<&EnumType>) -> Typed<C::Leaf> {
+    if !cx.enter(e.span) {
+        return Typed::Poison;
+    }
+    let result = typed_inner(cx, e, hint);
+    cx.leave();
+    result
+}
+
+fn typed_inner<C: Context>(cx: &mut C, e: &ast::Expr, hint: Option<&EnumType>) -> Typed<C::Leaf> {
+    match &e.kind {
+        ExprKind::Bool(b) => Typed::Bool(Expr::Const(Value::Bool(*b))),
+        ExprKind::Number(digits) => number(cx, digits, e.span),
+        ExprKind::Name(name) => named(cx, name, e.span, hint),
+        ExprKind::At(name, paths) => cx.at(name, paths, e.span),
+        ExprKind::Call(name, args) => cx.call(name, args, hint, e.span),
+        ExprKind::Not(a) => truth(cx, a).map_or(Typed::Poison, |a| Typed::Bool(typed::not(a))),
+        ExprKind::And(es) => truths(cx, es).map_or(Typed::Poison, |es| Typed::Bool(typed::and(es))),
+        ExprKind::Or(es) => truths(cx, es).map_or(Typed::Poison, |es| Typed::Bool(typed::or(es))),
+        ExprKind::Implies(a, b) => both(cx, a, b, |a, b| typed::or([typed::not(a), b])),
+        ExprKind::Iff(a, b) => both(cx, a, b, typed::iff),
+        ExprKind::Compare(op, a, b) => compare(cx, *op, a, b, e.span),
+        ExprKind::Neg(a) => negated(cx, a, e.span),
+        ExprKind::Sum(terms) => sum(cx, terms, e.span),
+        ExprKind::Arith(op, a, b) => arith(cx, *op, a, b, e.span),
+        ExprKind::In(element, set) => membership(cx, element, set, e.span),
+        ExprKind::If(c, a, b) => choice(cx, c, a, b, hint),
+        ExprKind::Tuple(_) => {
+            let message = "a tuple can only stand to the left of `in` and in the set to its right";
+            cx.error(Diagnostic::error("misplaced-tuple", e.span, message))
+        }
+        ExprKind::Unary(..) | ExprKind::Binary(..) => {
+            let diagnostic = cx.temporal(e.span);
+            cx.error(diagnostic)
+        }
+    }
+}
+
+/// A truth value, or `None` after a message.
+pub(crate) fn truth<C: Context>(cx: &mut C, e: &ast::Expr) -> Option<Expr<C::Leaf>> {
+    match typed(cx, e, None) {
+        Typed::Bool(expr) => Some(expr),
+        other => {
+            mismatch(cx, &other, "a truth value", e.span);
+            None
+        }
+    }
+}
+
+/// An integer with its bounds, or `None` after a message.
+pub(crate) fn integer<C: Context>(cx: &mut C, e: &ast::Expr) -> Option<(Expr<C::Leaf>, Bounds)> {
+    match typed(cx, e, None) {
+        Typed::Int(expr, bounds) => Some((expr, bounds)),
+        other => {
+            mismatch(cx, &other, "an integer", e.span);
+            None
+        }
+    }
+}
+
+/// Says that something of another type was expected, unless it is poisoned.
+pub(crate) fn mismatch<C: Context>(cx: &mut C, found: &Typed<C::Leaf>, expected: &str, span: Span) {
+    if !matches!(found, Typed::Poison) {
+        let message = format!("expected {expected}, found {}", found.describe());
+        cx.error(Diagnostic::error("type-mismatch", span, message));
+    }
+}
+
+fn truths<C: Context>(cx: &mut C, es: &[ast::Expr]) -> Option<Vec<Expr<C::Leaf>>> {
+    // All of them are typed before the first failure counts: one run reports all mistakes.
+    let typed: Vec<_> = es.iter().map(|e| truth(cx, e)).collect();
+    typed.into_iter().collect()
+}
+
+fn both<C: Context>(
+    cx: &mut C,
+    a: &ast::Expr,
+    b: &ast::Expr,
+    make: impl Fn(Expr<C::Leaf>, Expr<C::Leaf>) -> Expr<C::Leaf>,
+) -> Typed<C::Leaf> {
+    let (a, b) = (truth(cx, a), truth(cx, b));
+    a.zip(b).map_or(Typed::Poison, |(a, b)| Typed::Bool(make(a, b)))
+}
+
+fn number<C: Context>(cx: &mut C, digits: &str, span: Span) -> Typed<C::Leaf> {
+    if digits.contains('.') {
+        let message = "real numbers are not supported yet";
+        return cx.error(Diagnostic::error("not-supported", span, message));
+    }
+    match digits.parse::<i64>() {
+        Ok(n) if i128::from(n) <= LIMIT => Typed::int(n),
+        _ => cx.error(Diagnostic::error("number-too-large", span, "the number does not fit in 62 bits")),
+    }
+}
+
+fn named<C: Context>(cx: &mut C, name: &str, span: Span, hint: Option<&EnumType>) -> Typed<C::Leaf> {
+    let value = hint.and_then(|values| Some((values.iter().position(|v| v == name)?, values)));
+    let meant = cx.resolve(name, span);
+    match (value, meant) {
+        (Some((_, values)), Some(Typed::Enum(_, other))) if other == *values => {
+            let message = format!("`{name}` is both a value of {} and a variable", braces(values));
+            cx.error(Diagnostic::error("ambiguous-name", span, message).with_help("rename one of them"))
+        }
+        (Some((index, values)), _) => {
+            let index = u32::try_from(index).unwrap_or(u32::MAX);
+            Typed::Enum(Expr::Const(Value::Enum(index)), values.clone())
+        }
+        (None, Some(meant)) => meant,
+        (None, None) if hint.is_none() && cx.is_enum_value(name) => {
+            let message = format!("`{name}` is a value of an enumeration, but nothing here says of which");
+            let help = "compare it with a variable of that enumeration";
+            cx.error(Diagnostic::error("ambiguous-name", span, message).with_help(help))
+        }
+        (None, None) => {
+            let diagnostic = match hint {
+                Some(values) => {
+                    let message = format!("`{name}` is not one of {}", braces(values));
+                    let diagnostic = Diagnostic::error("unknown-name", span, message);
+                    super::diagnostics::suggest(diagnostic, name, values.iter().map(String::as_str))
+                }
+                None => cx.unknown(name, span),
+            };
+            cx.error(diagnostic)
+        }
+    }
+}
+
+/// Whether the expression may need the type of the other side to be understood.
+fn wants_hint<C: Context>(cx: &C, e: &ast::Expr) -> bool {
+    match &e.kind {
+        ExprKind::Name(name) => cx.is_enum_value(name),
+        ExprKind::If(_, a, b) => wants_hint(cx, a) || wants_hint(cx, b),
+        _ => false,
+    }
+}
+
+/// Types two operands that should have one type; the one that stands on its own first.
+fn operands<C: Context>(
+    cx: &mut C,
+    a: &ast::Expr,
+    b: &ast::Expr,
+    hint: Option<&EnumType>,
+) -> (Typed<C::Leaf>, Typed<C::Leaf>) {
+    if hint.is_none() && wants_hint(cx, a) && !wants_hint(cx, b) {
+        let right = typed(cx, b, None);
+        // An enumeration value beside something poisoned cannot be judged.
+        if matches!(right, Typed::Poison) {
+            return (Typed::Poison, right);
+        }
+        return (typed(cx, a, right.enumeration()), right);
+    }
+    let left = typed(cx, a, hint);
+    if matches!(left, Typed::Poison) && wants_hint(cx, b) {
+        return (left, Typed::Poison);
+    }
+    let right = typed(cx, b, hint.or(left.enumeration()));
+    (left, right)
+}
+
+fn compare<C: Context>(
+    cx: &mut C,
+    op: CompareOp,
+    a: &ast::Expr,
+    b: &ast::Expr,
+    span: Span,
+) -> Typed<C::Leaf> {
+    if let Some(special) = cx.compare_special(op, a, b, span) {
+        return special;
+    }
+    let (left, right) = operands(cx, a, b, None);
+    compare_typed(cx, op, left, right, span)
+}
+
+/// Compares two typed operands.
+pub(crate) fn compare_typed<C: Context>(
+    cx: &mut C,
+    op: CompareOp,
+    left: Typed<C::Leaf>,
+    right: Typed<C::Leaf>,
+    span: Span,
+) -> Typed<C::Leaf> {
+    use typed::compare as make;
+    let equality = matches!(op, CompareOp::Eq | CompareOp::Ne);
+    let negate = |e| if op == CompareOp::Ne { typed::not(e) } else { e };
+    match (left, right) {
+        (Typed::Poison, _) | (_, Typed::Poison) => Typed::Poison,
+        (Typed::Int(a, _), Typed::Int(b, _)) => Typed::Bool(match op {
+            CompareOp::Eq | CompareOp::Ne => negate(make(Comparison::Eq, a, b)),
+            CompareOp::Lt => make(Comparison::Lt, a, b),
+            CompareOp::Le => make(Comparison::Le, a, b),
+            CompareOp::Gt => make(Comparison::Lt, b, a),
+            CompareOp::Ge => make(Comparison::Le, b, a),
+        }),
+        (Typed::Enum(a, t), Typed::Enum(b, u)) if equality && t == u => {
+            Typed::Bool(negate(make(Comparison::Eq, a, b)))
+        }
+        (Typed::Bool(a), Typed::Bool(b)) if equality => Typed::Bool(negate(typed::iff(a, b))),
+        (left, right) => {
+            let (left, right) = (left.describe(), right.describe());
+            let message = if equality {
+                format!("cannot compare {left} with {right}")
+            } else {
+                format!("only integers have an order, not {left} and {right}")
+            };
+            cx.error(Diagnostic::error("type-mismatch", span, message))
+        }
+    }
+}
+
+/// The message about arithmetic that may leave 62 bits.
+fn overflow<C: Context>(cx: &mut C, span: Span) -> Typed<C::Leaf> {
+    let message = "the value may not fit in 62 bits";
+    cx.error(Diagnostic::error("number-too-large", span, message).with_help("make the ranges smaller"))
+}
+
+fn negated<C: Context>(cx: &mut C, a: &ast::Expr, span: Span) -> Typed<C::Leaf> {
+    let Some((a, bounds)) = integer(cx, a) else { return Typed::Poison };
+    match typed::scale(-1, a, bounds) {
+        Some((e, bounds)) => Typed::Int(e, bounds),
+        None => overflow(cx, span),
+    }
+}
+
+fn sum<C: Context>(cx: &mut C, terms: &[(bool, ast::Expr)], span: Span) -> Typed<C::Leaf> {
+    let parts: Vec<_> = terms
+        .iter()
+        .map(|(minus, term)| {
+            let (e, bounds) = integer(cx, term)?;
+            if *minus { typed::scale(-1, e, bounds) } else { Some((e, bounds)) }
+        })
+        .collect();
+    let Some(parts) = parts.into_iter().collect::<Option<Vec<_>>>() else { return Typed::Poison };
+    match typed::sum(parts) {
+        Some((e, bounds)) => Typed::Int(e, bounds),
+        None => overflow(cx, span),
+    }
+}
+
+fn arith<C: Context>(cx: &mut C, op: ArithOp, a: &ast::Expr, b: &ast::Expr, span: Span) -> Typed<C::Leaf> {
+    if op == ArithOp::Divide {
+        let message = "`/` divides reals, which are not supported yet";
+        let help = "for integers write `div` (rounds down) or `%` (remainder)";
+        return cx.error(Diagnostic::error("not-supported", span, message).with_help(help));
+    }
+    let (left, right) = (integer(cx, a), integer(cx, b));
+    let Some(((left, lb), (right, rb))) = left.zip(right) else { return Typed::Poison };
+    if op == ArithOp::Mul {
+        let product = match (known_int(&left), known_int(&right)) {
+            (Some(factor), _) => typed::scale(factor, right, rb),
+            (_, Some(factor)) => typed::scale(factor, left, lb),
+            _ => {
+                let message = "a product of two things that vary is not linear";
+                let diagnostic = Diagnostic::error("nonlinear", span, message);
+                return cx.error(diagnostic.with_help("one side of `*` must be a constant"));
+            }
+        };
+        return product.map_or_else(|| overflow(cx, span), |(e, bounds)| Typed::Int(e, bounds));
+    }
+    let Some(by) = known_int(&right).filter(|by| *by > 0) else {
+        let message = "the divisor must be a positive constant";
+        return cx.error(Diagnostic::error("bad-divisor", b.span, message));
+    };
+    let divide = if op == ArithOp::Div { typed::quotient } else { typed::remainder };
+    let (e, bounds) = divide(left, lb, by);
+    Typed::Int(e, bounds)
+}
+
+fn choice<C: Context>(
+    cx: &mut C,
+    condition: &ast::Expr,
+    then: &ast::Expr,
+    otherwise: &ast::Expr,
+    hint: Option<&EnumType>,
+) -> Typed<C::Leaf> {
+    let c = truth(cx, condition);
+    let (a, b) = operands(cx, then, otherwise, hint);
+    let Some(c) = c else { return Typed::Poison };
+    match (a, b) {
+        (Typed::Poison, _) | (_, Typed::Poison) => Typed::Poison,
+        (Typed::Bool(a), Typed::Bool(b)) => Typed::Bool(typed::choice(c, a, b)),
+        (Typed::Int(a, ab), Typed::Int(b, bb)) => Typed::Int(typed::choice(c, a, b), ab.hull(bb)),
+        (Typed::Enum(a, t), Typed::Enum(b, u)) if t == u => Typed::Enum(typed::choice(c, a, b), t),
+        (a, b) => {
+            let message = format!("one case is {}, the other {}", a.describe(), b.describe());
+            cx.error(Diagnostic::error("type-mismatch", then.span.to(otherwise.span), message))
+        }
+    }
+}

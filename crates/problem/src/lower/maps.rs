@@ -1,0 +1,244 @@
+//! Systems from maps: the items that only maps have, and the files that hold them.
+
+use super::base::Base;
+use super::consts::duplicate;
+use super::diagnostics::suggest;
+use super::ros;
+use super::system::Env;
+use crate::grid::{self, Format, GridMap, Legend, MOVES, Meaning, Move, Row, Rule, Rules};
+use hyperplan_syntax::ast::{self, Ident, SystemItem, Text};
+use hyperplan_syntax::{Diagnostic, Span};
+use rustc_hash::FxHashMap;
+
+/// A map whose rows stand in the problem file.
+pub(super) fn inline(ast: &ast::System, rows: &[Text], env: &mut Env) -> Base {
+    let lines: Vec<Row> =
+        rows.iter().map(|row| Row { text: &row.text, span: row.span, verbatim: false }).collect();
+    let whole = rows.iter().map(|row| row.span).reduce(Span::to).unwrap_or(ast.span);
+    let map = legend(ast, Format::Text, env)
+        .and_then(|legend| grid::from_rows(&lines, Format::Text, &legend, whole, env.diagnostics));
+    finish(ast, map, env)
+}
+
+/// A map in a file of its own: text, a Moving AI benchmark, or a ROS map.
+pub(super) fn file(ast: &ast::System, file: &Text, env: &mut Env) -> Base {
+    let map = read_file(ast, file, env);
+    finish(ast, map, env)
+}
+
+fn read_file(ast: &ast::System, file: &Text, env: &mut Env) -> Option<GridMap> {
+    let text = load_text(&file.text, file.span, env)?;
+    let lower = file.text.to_lowercase();
+    if lower.ends_with(".yaml") || lower.ends_with(".yml") {
+        // Pixels are no letters, but a legend for them is a mistake worth reporting.
+        legend(ast, Format::Text, env)?;
+        return ros::read(&file.text, file.span, &text, env);
+    }
+    let source = env.sources.add(file.text.clone(), text.as_str());
+    let whole = Span::new(source, 0..text.len().min(1));
+    let mut lines = lines(&text, source);
+    let first = lines.first().map_or("", |row| row.text);
+    if first.split_whitespace().next() == Some("type") {
+        let legend = legend(ast, Format::MovingAi, env)?;
+        let rows = moving_ai(&lines, env)?;
+        return grid::from_rows(rows, Format::MovingAi, &legend, whole, env.diagnostics);
+    }
+    while lines.last().is_some_and(|row| row.text.is_empty()) {
+        lines.pop();
+    }
+    if lines.is_empty() {
+        let message = format!("the map file `{}` is empty", file.text);
+        env.diagnostics.push(Diagnostic::error("bad-map", file.span, message));
+        return None;
+    }
+    let legend = legend(ast, Format::Text, env)?;
+    grid::from_rows(&lines, Format::Text, &legend, whole, env.diagnostics)
+}
+
+/// The text of a file that the problem names at `span`.
+fn load_text(path: &str, span: Span, env: &mut Env) -> Option<String> {
+    let diagnostic = match env.loader.load(path) {
+        Ok(bytes) => match String::from_utf8(bytes) {
+            Ok(text) if !text.contains('\0') => return Some(text),
+            _ => Diagnostic::error("not-text", span, format!("`{path}` is not a text file")),
+        },
+        Err(reason) => {
+            let help = "paths are relative to the problem file";
+            Diagnostic::error("cannot-read", span, format!("cannot read `{path}`: {reason}")).with_help(help)
+        }
+    };
+    env.diagnostics.push(diagnostic);
+    None
+}
+
+/// The lines of a text with their places, without line ends.
+fn lines(text: &str, source: hyperplan_syntax::SourceId) -> Vec<Row<'_>> {
+    let mut start = 0;
+    let mut rows = Vec::new();
+    for line in text.split_inclusive('\n') {
+        let trimmed = line.trim_end_matches(['\n', '\r']);
+        let span = Span::new(source, start..start + trimmed.len());
+        rows.push(Row { text: trimmed, span, verbatim: true });
+        start += line.len();
+    }
+    rows
+}
+
+/// The rows of a Moving AI map, after its header is read and agrees with them.
+fn moving_ai<'a>(lines: &'a [Row<'a>], env: &mut Env) -> Option<&'a [Row<'a>]> {
+    let bad = |env: &mut Env, span, message: String| {
+        env.diagnostics.push(Diagnostic::error("bad-map", span, message));
+    };
+    let (mut height, mut width) = (None, None);
+    for (index, line) in lines.iter().enumerate() {
+        let words: Vec<&str> = line.text.split_whitespace().collect();
+        match words.as_slice() {
+            [] | ["type", _] => {}
+            ["height", n] if n.parse::<usize>().is_ok() => height = n.parse().ok(),
+            ["width", n] if n.parse::<usize>().is_ok() => width = n.parse().ok(),
+            ["map"] => {
+                let (Some(height), Some(width)) = (height, width) else {
+                    bad(env, line.span, "the header gives no height or no width".into());
+                    return None;
+                };
+                let mut rows = &lines[index + 1..];
+                while let [rest @ .., last] = rows
+                    && last.text.is_empty()
+                {
+                    rows = rest;
+                }
+                return sized(rows, width, height, line.span, env).then_some(rows);
+            }
+            _ => {
+                let message = "expected `type octile`, `height N`, `width N` or `map`".into();
+                bad(env, line.span, message);
+                return None;
+            }
+        }
+    }
+    let end = lines.last().map(|line| line.span)?;
+    bad(env, end, "the header does not end: no line `map`".into());
+    None
+}
+
+/// Whether the rows have the size that the header says.
+fn sized(rows: &[Row], width: usize, height: usize, header: Span, env: &mut Env) -> bool {
+    if rows.len() != height {
+        let message = format!("the header says {height} rows, the map has {}", rows.len());
+        env.diagnostics.push(Diagnostic::error("bad-map", header, message));
+        return false;
+    }
+    let wrong = rows.iter().find(|row| row.text.chars().count() != width);
+    if let Some(row) = wrong {
+        let message = format!("this row has {} cells, the header says {width}", row.text.chars().count());
+        env.diagnostics.push(Diagnostic::error("ragged-map", row.span, message));
+    }
+    wrong.is_none()
+}
+
+/// The system's parts; without a map after an error, what keeps the names known that every map has.
+fn finish(ast: &ast::System, map: Option<GridMap>, env: &mut Env) -> Base {
+    let rules = rules(ast, env);
+    let failed = map.is_none();
+    let map = map.unwrap_or(GridMap { width: 1, height: 1, ..GridMap::default() });
+    let mut base = grid::base(&map, &rules, env.actions, ast.span);
+    base.poisoned = failed;
+    base
+}
+
+/// The `legend` items, or `None` after a message.
+fn legend(ast: &ast::System, format: Format, env: &mut Env) -> Option<Legend> {
+    let mut legend: Legend = Vec::new();
+    let mut places: FxHashMap<char, Span> = FxHashMap::default();
+    let mut failed = false;
+    for item in &ast.items {
+        let SystemItem::Legend { letter, label, span } = item else { continue };
+        let mut chars = letter.text.chars();
+        let diagnostic = match (chars.next(), chars.next()) {
+            (Some(c), None) => match places.insert(c, *span) {
+                Some(first) => {
+                    Diagnostic::error("duplicate-name", *span, format!("a second legend for {c:?}"))
+                        .with_related(first, "the first one")
+                }
+                None if !format.may_redefine(c) => {
+                    let message = format!("the letter {c:?} has a meaning already");
+                    Diagnostic::error("reserved-name", letter.span, message).with_help(
+                        "in maps `.` and space are free, `#` and `@` obstacles, `S` start, `G` goal",
+                    )
+                }
+                None => {
+                    let meaning =
+                        label.as_ref().map_or(Meaning::Obstacle, |l| Meaning::Labelled(l.name.clone()));
+                    legend.push((c, meaning));
+                    continue;
+                }
+            },
+            _ => Diagnostic::error("bad-legend", letter.span, "expected a single letter"),
+        };
+        failed = true;
+        env.diagnostics.push(diagnostic);
+    }
+    (!failed).then_some(legend)
+}
+
+/// The `moves`, `obstacle` and `edge` items.
+fn rules(ast: &ast::System, env: &mut Env) -> Rules {
+    let mut moves: Option<Vec<Move>> = None;
+    let (mut obstacle, mut edge) = (None, None);
+    let mut seen: FxHashMap<&str, Span> = FxHashMap::default();
+    for item in &ast.items {
+        let (what, at) = match item {
+            SystemItem::Moves(names) => match names.first() {
+                Some(first) => ("moves", first),
+                None => continue,
+            },
+            SystemItem::Obstacle(rule) => ("obstacle", rule),
+            SystemItem::Edge(rule) => ("edge", rule),
+            _ => continue,
+        };
+        if let Some(first) = seen.insert(what, at.span) {
+            let message = format!("`{what}` was said already");
+            let diagnostic = Diagnostic::error("repeated-item", at.span, message);
+            env.diagnostics.push(diagnostic.with_related(first, "here"));
+        }
+        match item {
+            SystemItem::Moves(names) => moves = Some(named_moves(names, env)),
+            SystemItem::Obstacle(name) => obstacle = named_rule(name, env),
+            SystemItem::Edge(name) => edge = named_rule(name, env),
+            _ => {}
+        }
+    }
+    Rules {
+        moves: moves.filter(|m| !m.is_empty()).unwrap_or_else(|| MOVES[..4].to_vec()),
+        obstacle: obstacle.unwrap_or_default(),
+        edge: edge.unwrap_or_default(),
+    }
+}
+
+fn named_moves(names: &[Ident], env: &mut Env) -> Vec<Move> {
+    let mut moves: Vec<Move> = Vec::new();
+    for (index, name) in names.iter().enumerate() {
+        match MOVES.iter().find(|m| m.name == name.name) {
+            Some(step) if !moves.contains(step) => moves.push(*step),
+            Some(_) => {
+                let first = names[..index].iter().find(|n| n.name == name.name).unwrap_or(name);
+                env.diagnostics.push(duplicate("move", name, first.span));
+            }
+            None => {
+                let diagnostic =
+                    Diagnostic::error("unknown-move", name.span, format!("no move `{}`", name.name));
+                env.diagnostics.push(suggest(diagnostic, &name.name, MOVES.iter().map(|m| m.name)));
+            }
+        }
+    }
+    moves
+}
+
+fn named_rule(name: &Ident, env: &mut Env) -> Option<Rule> {
+    let rule = Rule::named(&name.name);
+    if rule.is_none() {
+        let diagnostic = Diagnostic::error("unknown-rule", name.span, format!("no rule `{}`", name.name));
+        env.diagnostics.push(suggest(diagnostic, &name.name, Rule::NAMES));
+    }
+    rule
+}

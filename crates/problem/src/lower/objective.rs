@@ -1,0 +1,270 @@
+//! Objectives: quantifiers, templates, and the check that every path matters.
+
+use super::Diagnostics;
+use super::base::Actions;
+use super::consts::{Consts, duplicate};
+use super::diagnostics::suggest;
+use super::formula::number_of_steps;
+use super::limits::Limits;
+use super::paths::{Defines, Frame, PathContext};
+use super::template::{Bindings, bind};
+use crate::expr::PathLeaf;
+use crate::ids::{PathId, SystemId};
+use crate::objective::{Formula, Mode, Node, Objective, PathVar, Quantifier};
+use crate::system::System;
+use hyperplan_syntax::Diagnostic;
+use hyperplan_syntax::ast::{self, ExprKind, ObjectiveBody};
+use rustc_hash::FxHashMap;
+use typed_index_collections::{TiSlice, TiVec};
+
+/// What objectives share.
+pub(super) struct Shared<'a> {
+    pub(super) systems: &'a TiSlice<SystemId, System>,
+    pub(super) poisoned: &'a TiSlice<SystemId, bool>,
+    pub(super) actions: &'a Actions,
+    pub(super) consts: &'a Consts,
+    pub(super) defines: Defines<'a>,
+    pub(super) templates: FxHashMap<&'a str, &'a ast::Template>,
+    /// In order, for suggestions.
+    pub(super) template_names: Vec<&'a str>,
+}
+
+/// What an objective says, be it by itself or by a template.
+struct Body<'a> {
+    defines: &'a [ast::Define],
+    quantifiers: &'a [ast::Quantifier],
+    body: &'a ast::Expr,
+    bindings: Bindings<'a>,
+    consts: Consts,
+}
+
+/// An objective; `None` after a message.
+pub(super) fn lower_objective(
+    shared: &Shared,
+    ast: &ast::Objective,
+    diagnostics: &mut Diagnostics,
+) -> Option<Objective> {
+    let mode = mode(shared, ast, diagnostics);
+    let body = match &ast.body {
+        ObjectiveBody::Formula { defines, quantifiers, body } => {
+            Body { defines, quantifiers, body, bindings: Bindings::default(), consts: shared.consts.clone() }
+        }
+        ObjectiveBody::Instance { template: name, args } => {
+            let Some(template) = shared.templates.get(name.name.as_str()) else {
+                let message = format!("no template `{}`", name.name);
+                let diagnostic = Diagnostic::error("unknown-template", name.span, message);
+                diagnostics.push(suggest(diagnostic, &name.name, shared.template_names.iter().copied()));
+                return None;
+            };
+            let (bindings, consts) = bind(template, name, args, shared.consts, diagnostics)?;
+            diagnostics.enter_use(name.span, format!("in this instance of `{}`", name.name));
+            let (defines, quantifiers) = (&template.defines, &template.quantifiers);
+            Body { defines, quantifiers, body: &template.body, bindings, consts }
+        }
+    };
+    let objective = lower_body(shared, ast, &body, mode, diagnostics);
+    if matches!(ast.body, ObjectiveBody::Instance { .. }) {
+        diagnostics.leave_use();
+    }
+    objective
+}
+
+/// `within K`; `None` after a message.
+fn mode(shared: &Shared, ast: &ast::Objective, diagnostics: &mut Diagnostics) -> Option<Mode> {
+    if let Some(semantics) = &ast.semantics {
+        const KNOWN: [&str; 4] = ["pes", "opt", "hpes", "hopt"];
+        let diagnostic = if KNOWN.contains(&semantics.name.as_str()) {
+            let message = format!("`semantics {}` is not supported yet", semantics.name);
+            Diagnostic::error("not-supported", semantics.span, message)
+        } else {
+            let message = format!("no semantics `{}`", semantics.name);
+            suggest(Diagnostic::error("unknown-name", semantics.span, message), &semantics.name, KNOWN)
+        };
+        diagnostics.push(diagnostic);
+        return None;
+    }
+    let Some(within) = &ast.within else { return Some(Mode::Bounded) };
+    let steps = shared.consts.evaluate(within, diagnostics)?;
+    number_of_steps(steps, "the length", within.span, diagnostics).map(Mode::Within)
+}
+
+fn lower_body(
+    shared: &Shared,
+    ast: &ast::Objective,
+    body: &Body,
+    mode: Option<Mode>,
+    diagnostics: &mut Diagnostics,
+) -> Option<Objective> {
+    if body.quantifiers.is_empty() {
+        let message = "the objective has no path";
+        let diagnostic = Diagnostic::error("no-path", ast.name.span, message);
+        diagnostics.push(diagnostic.with_help("begin it with `exists p.` or `forall p.`"));
+        return None;
+    }
+    let defines = visible_defines(shared, body.defines, diagnostics);
+    let (paths, frame) = paths(shared, body, diagnostics);
+    let complete = paths.len() == body.quantifiers.len();
+    let mut cx = PathContext {
+        systems: shared.systems,
+        poisoned: shared.poisoned,
+        actions: shared.actions,
+        globals: shared.consts,
+        consts: &body.consts,
+        bindings: body.bindings.clone(),
+        defines: &defines,
+        paths,
+        frame,
+        expanding: Vec::new(),
+        // After a refused length nothing more is to be said about bounds.
+        mode: mode.unwrap_or(Mode::Within(0)),
+        formula: Formula::default(),
+        diagnostics,
+        limits: Limits::default(),
+    };
+    cx.formula(body.body)?;
+    let (paths, formula) = (cx.paths, cx.formula);
+    if !complete {
+        return None;
+    }
+    let name = ast.name.name.clone();
+    let objective = Objective { name, paths, mode: mode?, formula, span: ast.name.span };
+    unused_paths(&objective, diagnostics);
+    Some(objective)
+}
+
+/// The definitions in reach: those inside hide those before.
+fn visible_defines<'a>(
+    shared: &Shared<'a>,
+    local: &'a [ast::Define],
+    diagnostics: &mut Diagnostics,
+) -> Defines<'a> {
+    let mut defines = shared.defines.clone();
+    let mut inside: FxHashMap<&str, &ast::Define> = FxHashMap::default();
+    for define in local {
+        if let Some(first) = inside.insert(&define.name.name, define) {
+            diagnostics.push(duplicate("definition", &define.name, first.name.span));
+        }
+        defines.insert(&define.name.name, (define, true));
+    }
+    defines
+}
+
+/// The path variables. One whose system is not known is in the frame only, so that nothing more is said of it.
+fn paths<'a>(
+    shared: &Shared,
+    body: &Body<'a>,
+    diagnostics: &mut Diagnostics,
+) -> (TiVec<PathId, PathVar>, Frame<'a>) {
+    let mut paths: TiVec<PathId, PathVar> = TiVec::new();
+    let mut frame = Frame { paths: Vec::new(), parameters: true };
+    for (index, quantifier) in body.quantifiers.iter().enumerate() {
+        let path = &quantifier.path;
+        if let Some(first) = body.quantifiers[..index].iter().find(|q| q.path.name == path.name) {
+            diagnostics.push(duplicate("path", path, first.path.span));
+            continue;
+        }
+        let id = system_of(shared, body, quantifier, diagnostics).map(|system| {
+            let quantifier = if quantifier.forall { Quantifier::Forall } else { Quantifier::Exists };
+            paths.push_and_get_key(PathVar { name: path.name.clone(), quantifier, system, span: path.span })
+        });
+        frame.paths.push((&path.name, id));
+    }
+    (paths, frame)
+}
+
+/// The system of a path: the one it names, or the only one that it can be.
+fn system_of(
+    shared: &Shared,
+    body: &Body,
+    quantifier: &ast::Quantifier,
+    diagnostics: &mut Diagnostics,
+) -> Option<SystemId> {
+    let names = || shared.systems.iter().map(|system| system.name.as_str());
+    if let Some(name) = &quantifier.system {
+        let found = shared.systems.iter_enumerated().find(|(_, system)| system.name == name.name);
+        if found.is_none() {
+            let diagnostic =
+                Diagnostic::error("unknown-system", name.span, format!("no system `{}`", name.name));
+            diagnostics.push(suggest(diagnostic, &name.name, names()));
+        }
+        return found.map(|(id, _)| id);
+    }
+    let path = &quantifier.path;
+    let candidates = candidates(shared, body);
+    match candidates.as_slice() {
+        [only] => return Some(*only),
+        _ if shared.systems.is_empty() => {
+            let message = "there is no system whose path this could be";
+            let diagnostic = Diagnostic::error("no-system", path.span, message);
+            diagnostics.push(diagnostic.with_help("declare one: `system NAME { ... }`"));
+        }
+        [] => nowhere(shared, body, diagnostics),
+        _ => {
+            let message = format!("there are several systems; whose path is `{}`?", path.name);
+            let diagnostic = Diagnostic::error("which-system", path.span, message);
+            let example = names().next().unwrap_or_default();
+            diagnostics.push(diagnostic.with_help(format!("say it: `{}: {example}`", path.name)));
+        }
+    }
+    None
+}
+
+/// Reports the arguments of a template's instance that are labels of no system, or that no one system has all of them.
+fn nowhere(shared: &Shared, body: &Body, diagnostics: &mut Diagnostics) {
+    let mut args: Vec<&ast::Expr> = body.bindings.labels.values().copied().collect();
+    args.sort_unstable_by_key(|arg| arg.span);
+    let mut unknown = false;
+    for arg in &args {
+        let ExprKind::Name(name) = &arg.kind else { continue };
+        if !shared.systems.iter().any(|system| has(system, arg)) {
+            unknown = true;
+            let message = format!("no label or variable `{name}` in any system");
+            let labels = shared.systems.iter().flat_map(|s| s.labels.iter().map(|l| l.name.as_str()));
+            diagnostics.push(suggest(Diagnostic::error("unknown-name", arg.span, message), name, labels));
+        }
+    }
+    if let (false, Some(first)) = (unknown, args.first()) {
+        let message = "no single system has all the labels that the template is given";
+        diagnostics.push(Diagnostic::error("which-system", first.span, message));
+    }
+}
+
+/// Whether an argument is a label or variable of the system.
+fn has(system: &System, arg: &ast::Expr) -> bool {
+    match &arg.kind {
+        ExprKind::Name(name) => system.label(name).is_some() || system.var(name).is_some(),
+        _ => false,
+    }
+}
+
+/// The systems that a path without `: SYSTEM` may be of: for an instance of a template, those that have all the labels
+/// that it is given, so that templates, which name no system, serve files with several.
+fn candidates(shared: &Shared, body: &Body) -> Vec<SystemId> {
+    let all = shared.systems.iter_enumerated();
+    if shared.systems.len() == 1 {
+        return all.map(|(id, _)| id).collect();
+    }
+    let args = &body.bindings.labels;
+    all.filter(|(_, system)| args.values().all(|arg| has(system, arg))).map(|(id, _)| id).collect()
+}
+
+/// Warns of paths that the formula does not mention.
+fn unused_paths(objective: &Objective, diagnostics: &mut Diagnostics) {
+    let mut used: TiVec<PathId, bool> = objective.paths.iter().map(|_| false).collect();
+    for node in &objective.formula.nodes {
+        let Node::Atom(e) = node else { continue };
+        e.for_each_leaf(&mut |leaf| match leaf {
+            PathLeaf::State(p, _) | PathLeaf::Took(p, _) | PathLeaf::Enabled(p, _) => used[*p] = true,
+            PathLeaf::SameAction(p, q) | PathLeaf::SameState(p, q) => {
+                used[*p] = true;
+                used[*q] = true;
+            }
+        });
+    }
+    for (path, used) in objective.paths.iter().zip(used) {
+        if !used {
+            let message = format!("the path `{}` does not matter: nothing is said of it", path.name);
+            diagnostics.push(Diagnostic::warning("unused-path", path.span, message));
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! Names in a system: its variables, its labels, and constants.
+
+use super::consts::Consts;
+use super::diagnostics::{Diagnostics, suggest};
+use super::expr::{Context, enter};
+use super::limits::Limits;
+use super::typed::Typed;
+use crate::expr::{Expr, Leaf, Type};
+use crate::ids::{LabelId, VarId};
+use crate::system::Var;
+use hyperplan_syntax::{Diagnostic, Span};
+use rustc_hash::FxHashMap;
+use typed_index_collections::TiVec;
+
+/// What the names of one system stand for.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Names {
+    map: FxHashMap<String, (Leaf, Span)>,
+    /// In order of declaration, for suggestions.
+    order: Vec<String>,
+}
+
+impl Names {
+    pub(crate) fn get(&self, name: &str) -> Option<(Leaf, Span)> {
+        self.map.get(name).copied()
+    }
+
+    /// Declares a name; the place of the first declaration where there is one already.
+    pub(crate) fn declare(&mut self, name: &str, leaf: Leaf, span: Span) -> Result<(), Span> {
+        if let Some((_, first)) = self.map.get(name) {
+            return Err(*first);
+        }
+        self.map.insert(name.to_owned(), (leaf, span));
+        self.order.push(name.to_owned());
+        Ok(())
+    }
+
+    /// Renumbers the labels: `new[old]`.
+    pub(crate) fn renumber(&mut self, new: &[LabelId]) {
+        for name in &self.order {
+            if let Some((Leaf::Label(id), _)) = self.map.get_mut(name) {
+                *id = new[usize::from(*id)];
+            }
+        }
+    }
+
+    pub(crate) fn all(&self) -> impl Iterator<Item = &str> {
+        self.order.iter().map(String::as_str)
+    }
+}
+
+/// Typing expressions over one system's state.
+pub(crate) struct StateContext<'a> {
+    pub(crate) consts: &'a Consts,
+    pub(crate) diagnostics: &'a mut Diagnostics,
+    pub(crate) names: Names,
+    pub(crate) vars: TiVec<VarId, Var>,
+    /// The system's name, for messages.
+    pub(crate) system: String,
+    /// Whether part of the system is missing after an error, so that unknown names mean nothing.
+    pub(crate) poisoned: bool,
+    pub(crate) limits: Limits,
+}
+
+impl Context for StateContext<'_> {
+    type Leaf = Leaf;
+
+    fn diagnostics(&mut self) -> &mut Diagnostics {
+        self.diagnostics
+    }
+
+    fn enter(&mut self, span: Span) -> bool {
+        enter(&mut self.limits, self.diagnostics, span)
+    }
+
+    fn leave(&mut self) {
+        self.limits.leave();
+    }
+
+    fn resolve(&mut self, name: &str, _span: Span) -> Option<Typed<Leaf>> {
+        match self.names.get(name) {
+            Some((leaf @ Leaf::Var(id), _)) => Some(Typed::of_type(Expr::Leaf(leaf), &self.vars[id].ty)),
+            Some((leaf @ Leaf::Label(_), _)) => Some(Typed::Bool(Expr::Leaf(leaf))),
+            None => self.consts.typed(name).or(self.poisoned.then_some(Typed::Poison)),
+        }
+    }
+
+    fn is_enum_value(&self, name: &str) -> bool {
+        self.vars.iter().any(|var| has_value(&var.ty, name))
+    }
+
+    fn unknown(&mut self, name: &str, span: Span) -> Diagnostic {
+        let message = format!("no variable, label or constant `{name}` in system {}", self.system);
+        let candidates = self.names.all().chain(self.consts.names.iter().map(String::as_str));
+        suggest(Diagnostic::error("unknown-name", span, message), name, candidates)
+    }
+}
+
+/// Whether the type is an enumeration with that value.
+pub(crate) fn has_value(ty: &Type, name: &str) -> bool {
+    matches!(ty, Type::Enum(values) if values.iter().any(|v| v == name))
+}

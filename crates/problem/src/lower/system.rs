@@ -1,0 +1,283 @@
+//! Systems: variables, actions, labels, and what else an item of a system can say.
+
+use super::base::{Actions, Base};
+use super::clauses::lower_clause;
+use super::consts::{Consts, duplicate};
+use super::diagnostics::Diagnostics;
+use super::expr::{Context, truth, typed};
+use super::labels;
+use super::limits::{Limits, MAX_RANGE};
+use super::state::{Names, StateContext};
+use super::typed::{Typed, and, or};
+use super::{Loader, maps};
+use crate::expr::{Expr, Leaf, Type};
+use crate::ids::{ActionId, LabelId, VarId};
+use crate::system::{Label, System, Var};
+use hyperplan_syntax::ast::{self, Ident, SystemItem, SystemKind};
+use hyperplan_syntax::{Diagnostic, SourceMap};
+use rustc_hash::FxHashMap;
+
+/// What lowering a system needs besides its syntax.
+pub(crate) struct Env<'a> {
+    pub(crate) consts: &'a Consts,
+    pub(crate) actions: &'a mut Actions,
+    pub(crate) diagnostics: &'a mut Diagnostics,
+    pub(crate) sources: &'a mut SourceMap,
+    pub(crate) loader: &'a dyn Loader,
+}
+
+/// Names with a meaning of their own in objectives.
+const RESERVED: [&str; 5] = ["action", "state", "obs", "enabled", "none"];
+
+/// A system, and whether names of it may be missing after an error.
+pub(crate) fn lower_system(ast: &ast::System, env: &mut Env) -> (System, bool) {
+    let base = base(ast, env);
+    let mut cx = StateContext {
+        consts: env.consts,
+        diagnostics: env.diagnostics,
+        names: Names::default(),
+        vars: base.vars,
+        system: ast.name.name.clone(),
+        poisoned: base.poisoned,
+        limits: Limits::default(),
+    };
+    declare_base(&mut cx, &base.labels);
+    variables(&mut cx, ast);
+    let actions = if base.actions.is_empty() { actions(&mut cx, ast, env.actions) } else { base.actions };
+    let labels = lower_labels(&mut cx, ast, base.labels);
+    let mut system = System {
+        name: ast.name.name.clone(),
+        vars: cx.vars.clone(),
+        actions,
+        clauses: base.clauses,
+        init: base.init,
+        labels: labels.into_iter().collect(),
+        absorb: base.absorb,
+        observe: Vec::new(),
+        map: base.map,
+        span: ast.span,
+    };
+    for item in &ast.items {
+        lower_item(&mut cx, item, &ast.kind, env.actions, &mut system);
+    }
+    (system, cx.poisoned)
+}
+
+/// Where the system starts from: a map, or nothing.
+fn base(ast: &ast::System, env: &mut Env) -> Base {
+    match &ast.kind {
+        SystemKind::Plain => Base::default(),
+        SystemKind::GridRows(rows) => maps::inline(ast, rows, env),
+        SystemKind::GridFile(file) => maps::file(ast, file, env),
+        SystemKind::Graph(file) => {
+            let message = "systems from graph files are not supported yet";
+            env.diagnostics.push(Diagnostic::error("not-supported", file.span, message));
+            Base { poisoned: true, ..Base::default() }
+        }
+    }
+}
+
+/// Makes the variables and labels of a map known.
+fn declare_base(cx: &mut StateContext, labels: &[Label]) {
+    let vars = cx.vars.iter_enumerated().map(|(id, var)| (var.name.clone(), Leaf::Var(id), var.span));
+    let labels = labels.iter().enumerate();
+    let labels = labels.map(|(id, label)| (label.name.clone(), Leaf::Label(LabelId::from(id)), label.span));
+    for (name, leaf, span) in vars.chain(labels).collect::<Vec<_>>() {
+        declare(cx, &Ident { name, span }, leaf);
+    }
+}
+
+/// Declares a variable or label, unless its name is taken.
+fn declare(cx: &mut StateContext, name: &Ident, leaf: Leaf) -> bool {
+    let what = match leaf {
+        Leaf::Var(_) => "variable",
+        Leaf::Label(_) => "label",
+    };
+    if RESERVED.contains(&name.name.as_str()) {
+        let message =
+            format!("`{}` has a meaning of its own in objectives: no {what} can have that name", name.name);
+        cx.error(Diagnostic::error("reserved-name", name.span, message));
+        return false;
+    }
+    let clash = match cx.names.get(&name.name) {
+        Some((Leaf::Var(_), first)) => Some(duplicate("variable", name, first)),
+        Some((Leaf::Label(_), first)) => Some(duplicate("label", name, first)),
+        None => cx.consts.get(&name.name).map(|constant| duplicate("constant", name, constant.span)),
+    };
+    if let Some(diagnostic) = clash {
+        cx.error(diagnostic);
+        return false;
+    }
+    cx.names.declare(&name.name, leaf, name.span).is_ok()
+}
+
+/// Reads the `state` items.
+fn variables(cx: &mut StateContext, ast: &ast::System) {
+    for item in &ast.items {
+        let SystemItem::State(declarations) = item else { continue };
+        if ast.kind != SystemKind::Plain {
+            if let Some(first) = declarations.first() {
+                let message = "state variables besides those of the map are not supported yet";
+                cx.error(Diagnostic::error("not-supported", first.name.span, message));
+            }
+            cx.poisoned = true;
+            continue;
+        }
+        for declaration in declarations {
+            let id = VarId::from(cx.vars.len());
+            match lower_type(cx, declaration) {
+                Some(ty) if declare(cx, &declaration.name, Leaf::Var(id)) => {
+                    let (name, span) = (declaration.name.name.clone(), declaration.name.span);
+                    cx.vars.push(Var { name, ty, span });
+                }
+                _ => cx.poisoned = true,
+            }
+        }
+    }
+}
+
+fn lower_type(cx: &mut StateContext, declaration: &ast::StateDecl) -> Option<Type> {
+    let span = declaration.ty_span;
+    match &declaration.ty {
+        ast::Type::Bool => Some(Type::Bool),
+        ast::Type::Range(lo, hi) => {
+            let ends = [lo, hi].map(|end| cx.consts.evaluate(end, cx.diagnostics));
+            let [Some(lo), Some(hi)] = ends else { return None };
+            let diagnostic = if lo > hi {
+                let help = format!("the lower end comes first: {hi}..{lo}");
+                Diagnostic::error("empty-range", span, format!("the range {lo}..{hi} is empty"))
+                    .with_help(help)
+            } else if lo < -MAX_RANGE || hi > MAX_RANGE {
+                Diagnostic::error("number-too-large", span, "the ends of a range must lie within 2^40")
+            } else {
+                return Some(Type::Range { lo, hi });
+            };
+            cx.error(diagnostic);
+            None
+        }
+        ast::Type::Enum(values) => {
+            let mut seen = FxHashMap::default();
+            for value in values {
+                if let Some(first) = seen.insert(value.name.as_str(), value.span) {
+                    cx.error(duplicate("value", value, first));
+                    return None;
+                }
+            }
+            Some(Type::Enum(values.iter().map(|v| v.name.clone()).collect()))
+        }
+        ast::Type::Int | ast::Type::Real => {
+            let name = if declaration.ty == ast::Type::Int { "int" } else { "real" };
+            let message = format!("variables of type `{name}` are not supported yet");
+            let diagnostic = Diagnostic::error("not-supported", span, message);
+            cx.error(diagnostic.with_help("give the variable a range, such as `0..100`"));
+            None
+        }
+    }
+}
+
+/// Reads the `action` items; a system without any has the action `step`.
+fn actions(cx: &mut StateContext, ast: &ast::System, known: &mut Actions) -> Vec<ActionId> {
+    let mut declared: Vec<ActionId> = Vec::new();
+    let mut places = FxHashMap::default();
+    for item in &ast.items {
+        let SystemItem::Action(names) = item else { continue };
+        for name in names {
+            if name.name == "none" {
+                let message =
+                    "`none` says in objectives that no action was taken: no action can have that name";
+                cx.error(Diagnostic::error("reserved-name", name.span, message));
+            } else if let Some(first) = places.get(name.name.as_str()) {
+                cx.error(duplicate("action", name, *first));
+            } else {
+                places.insert(name.name.as_str(), name.span);
+                declared.push(known.intern(&name.name));
+            }
+        }
+    }
+    if declared.is_empty() {
+        declared.push(known.intern("step"));
+    }
+    declared
+}
+
+/// Reads the `label` items; they follow the labels of the map, and are sorted so that each reads only earlier ones.
+fn lower_labels(cx: &mut StateContext, ast: &ast::System, mut labels: Vec<Label>) -> Vec<Label> {
+    let mut bodies = Vec::new();
+    let mut next = labels.len();
+    for item in &ast.items {
+        let SystemItem::Label(name, body) = item else { continue };
+        if declare(cx, name, Leaf::Label(LabelId::from(next))) {
+            next += 1;
+            bodies.push((name, body));
+        } else {
+            // Its expression may be wrong on its own account.
+            truth(cx, body);
+        }
+    }
+    for (name, body) in bodies {
+        let expr = truth(cx, body).unwrap_or(Expr::FALSE);
+        labels.push(Label { name: name.name.clone(), expr, span: name.span });
+    }
+    let (labels, new) = labels::sort(labels, cx.diagnostics);
+    cx.names.renumber(&new);
+    labels
+}
+
+fn lower_item(
+    cx: &mut StateContext,
+    item: &SystemItem,
+    kind: &SystemKind,
+    actions: &Actions,
+    system: &mut System,
+) {
+    match item {
+        SystemItem::State(_) | SystemItem::Label(..) => {}
+        SystemItem::Action(names) if *kind != SystemKind::Plain => {
+            if let Some(name) = names.first() {
+                let message = "actions besides the moves of the map are not supported yet";
+                let diagnostic = Diagnostic::error("not-supported", name.span, message);
+                cx.error(diagnostic.with_help("choose the moves with `moves up, down, ...;`"));
+            }
+        }
+        SystemItem::Action(_) => {}
+        SystemItem::On(clause) if *kind != SystemKind::Plain => {
+            let message = "transitions besides the moves of the map are not supported yet";
+            cx.error(Diagnostic::error("not-supported", clause.span, message));
+        }
+        SystemItem::On(clause) => system.clauses.extend(lower_clause(cx, clause, system, actions)),
+        SystemItem::Init(e) => {
+            if let Some(e) = truth(cx, e) {
+                system.init = and([std::mem::replace(&mut system.init, Expr::TRUE), e]);
+            }
+        }
+        SystemItem::Absorb(e) => {
+            if let Some(e) = truth(cx, e) {
+                system.absorb = or([std::mem::replace(&mut system.absorb, Expr::FALSE), e]);
+            }
+        }
+        SystemItem::Observe(es) => {
+            for e in es {
+                match typed(cx, e, None) {
+                    Typed::Bool(e) | Typed::Int(e, _) | Typed::Enum(e, _) => system.observe.push(e),
+                    Typed::Poison => {}
+                }
+            }
+        }
+        SystemItem::Moves(names) => only_maps(cx, kind, "moves", names.first()),
+        SystemItem::Obstacle(name) => only_maps(cx, kind, "obstacle", Some(name)),
+        SystemItem::Edge(name) => only_maps(cx, kind, "edge", Some(name)),
+        SystemItem::Legend { letter, span, .. } => {
+            let name = Ident { name: letter.text.clone(), span: *span };
+            only_maps(cx, kind, "legend", Some(&name));
+        }
+    }
+}
+
+/// Refuses an item that only maps have.
+fn only_maps(cx: &mut StateContext, kind: &SystemKind, item: &str, at: Option<&Ident>) {
+    if let (SystemKind::Plain | SystemKind::Graph(_), Some(at)) = (kind, at) {
+        let message = format!("`{item}` belongs to maps");
+        let diagnostic = Diagnostic::error("misplaced-item", at.span, message);
+        cx.error(diagnostic.with_help("a map is declared as `system NAME = grid(\"file\") { ... }`"));
+    }
+}

@@ -1,0 +1,255 @@
+use super::interpreter::{holds, labelled, states, successors};
+use super::{codes, lowered_with, messages, ok, ok_with};
+use crate::{Overrides, System, Value};
+
+fn int(n: i64) -> Value {
+    Value::Int(n)
+}
+
+fn grid(text: &str) -> (crate::Problem, System) {
+    let problem = ok(text).problem;
+    let system = problem.systems.first().expect("a system").clone();
+    (problem, system)
+}
+
+/// Where a move leads from a cell (with `crash` false where there is such a variable): cells and crashes.
+fn go(text: &str, action: &str, x: i64, y: i64) -> Vec<(i64, i64, bool)> {
+    let (problem, system) = grid(text);
+    let mut state = vec![int(x), int(y)];
+    if system.vars.len() == 3 {
+        state.push(Value::Bool(false));
+    }
+    let action = problem.action(action).expect("the action exists");
+    let number = |v: Value| if let Value::Int(n) = v { n } else { panic!("{v:?}") };
+    successors(&system, &state, action)
+        .into_iter()
+        .map(|s| (number(s[0]), number(s[1]), s.get(2) == Some(&Value::Bool(true))))
+        .collect()
+}
+
+const MAP: &str = r#"system W = grid { "..G" ".#." "S.." "#;
+
+#[test]
+fn coordinates_count_from_the_bottom_left() {
+    let (_, system) = grid(&format!("{MAP} }}"));
+    assert_eq!(labelled(&system, "start"), [vec![int(0), int(0)]]);
+    assert_eq!(labelled(&system, "goal"), [vec![int(2), int(2)]]);
+    let map = system.map.as_ref().expect("a map");
+    assert_eq!((map.width, map.height, map.obstacles.as_slice()), (3, 3, &[(1, 1)][..]));
+    assert_eq!(map.crash, None);
+    let initial = states(&system).into_iter().filter(|s| holds(&system, &system.init, s)).count();
+    assert_eq!(initial, 8);
+}
+
+#[test]
+fn moves_by_default() {
+    let text = format!("{MAP} }}");
+    assert_eq!(go(&text, "up", 0, 0), [(0, 1, false)]);
+    assert_eq!(go(&text, "right", 0, 0), [(1, 0, false)]);
+    assert_eq!(go(&text, "down", 0, 2), [(0, 1, false)]);
+    assert_eq!(go(&text, "left", 2, 2), [(1, 2, false)]);
+    // Obstacle and edge: no transition.
+    assert_eq!(go(&text, "right", 0, 1), []);
+    assert_eq!(go(&text, "up", 1, 0), []);
+    assert_eq!(go(&text, "left", 0, 0), []);
+    assert_eq!(go(&text, "down", 2, 0), []);
+    assert_eq!(go(&text, "up", 2, 2), []);
+    assert_eq!(go(&text, "right", 2, 1), []);
+}
+
+#[test]
+fn obstacle_and_edge_rules() {
+    for (rule, outcome) in
+        [("stay", vec![(0, 1, false)]), ("crash", vec![(0, 1, true)]), ("undefined", vec![])]
+    {
+        let text = format!("{MAP} obstacle {rule}; }}");
+        assert_eq!(go(&text, "right", 0, 1), outcome, "{rule}");
+        assert_eq!(go(&text, "left", 0, 1), [], "the edge is another rule");
+        let text = format!("{MAP} edge {rule}; }}");
+        assert_eq!(go(&text, "left", 0, 1), outcome, "{rule}");
+        assert_eq!(go(&text, "right", 0, 1), [], "the obstacle is another rule");
+        assert_eq!(go(&text, "up", 0, 0), [(0, 1, false)]);
+    }
+}
+
+#[test]
+fn rules_where_obstacles_are_the_majority() {
+    let map = r##"system W = grid { "@@." "#.@" "#.@" obstacle crash; edge stay; moves up, right, up_right, stay; }"##;
+    assert_eq!(go(map, "up", 1, 0), [(1, 1, false)]);
+    assert_eq!(go(map, "up", 1, 1), [(1, 1, true)]);
+    assert_eq!(go(map, "up_right", 1, 1), [(2, 2, false)]);
+    assert_eq!(go(map, "up_right", 2, 2), [(2, 2, false)]);
+    assert_eq!(go(map, "right", 2, 2), [(2, 2, false)]);
+    assert_eq!(go(map, "right", 1, 1), [(1, 1, true)]);
+    assert_eq!(go(map, "stay", 1, 1), [(1, 1, false)]);
+}
+
+#[test]
+fn diagonal_moves() {
+    let text = format!("{MAP} moves up_left, up_right, down_left, down_right, stay; edge stay; }}");
+    assert_eq!(go(&text, "up_right", 1, 0), [(2, 1, false)]);
+    assert_eq!(go(&text, "up_left", 1, 0), [(0, 1, false)]);
+    assert_eq!(go(&text, "down_right", 1, 2), [(2, 1, false)]);
+    assert_eq!(go(&text, "down_left", 1, 2), [(0, 1, false)]);
+    assert_eq!(go(&text, "up_right", 0, 0), [], "an obstacle");
+    assert_eq!(go(&text, "down_left", 1, 0), [(1, 0, false)], "the edge");
+    assert_eq!(go(&text, "stay", 2, 0), [(2, 0, false)]);
+}
+
+#[test]
+fn crashes_absorb_and_hide_the_labels_of_the_map() {
+    let text =
+        format!("{MAP} obstacle crash; legend 'w' = water; label home = x == 0 & y == 0; absorb goal; }}");
+    let (problem, system) = grid(&text);
+    let crashed = [int(0), int(0), Value::Bool(true)];
+    for action in &system.actions {
+        assert_eq!(
+            successors(&system, &crashed, *action).into_iter().collect::<Vec<_>>(),
+            [crashed.to_vec()]
+        );
+    }
+    assert_eq!(labelled(&system, "start"), [vec![int(0), int(0), Value::Bool(false)]]);
+    assert_eq!(labelled(&system, "home").len(), 2, "the user's labels hold where they say");
+    assert_eq!(labelled(&system, "water").len(), 0, "a label of the legend exists without cells too");
+    assert!(states(&system).iter().all(|s| !holds(&system, &system.init, s) || s[2] == Value::Bool(false)));
+    let goal = [int(2), int(2), Value::Bool(false)];
+    let up = problem.action("up").expect("up");
+    assert_eq!(successors(&system, &goal, up).len(), 1);
+}
+
+#[test]
+fn init_is_conjoined() {
+    let (_, system) = grid(&format!("{MAP} init y == 1; }}"));
+    let initial: Vec<_> = states(&system).into_iter().filter(|s| holds(&system, &system.init, s)).collect();
+    assert_eq!(initial, [vec![int(0), int(1)], vec![int(2), int(1)]]);
+}
+
+#[test]
+fn legends() {
+    let (_, system) =
+        grid(r#"system W = grid { "wX" "S." legend 'w' = water; legend 'X' = #; legend 'v' = start; }"#);
+    assert_eq!(labelled(&system, "water"), [vec![int(0), int(1)]]);
+    assert_eq!(labelled(&system, "start"), [vec![int(0), int(0)]]);
+    assert_eq!(system.map.expect("a map").obstacles, [(1, 1)]);
+}
+
+#[test]
+fn cells_by_coordinates() {
+    let (_, system) = grid(r#"system W = grid { "..." "..." label at = (x, y) in {(0, 0), (2, 1)}; }"#);
+    assert_eq!(labelled(&system, "at"), [vec![int(0), int(0)], vec![int(2), int(1)]]);
+}
+
+#[test]
+fn labels_of_letters() {
+    let duplicate = codes(&format!("{MAP} label goal = x == 0; }}"));
+    assert_eq!(duplicate, [("duplicate-name", "goal".to_owned())]);
+    let (_, system) = grid(r#"system W = grid { ".." label goal = x == 1; }"#);
+    assert!(system.label("start").is_none());
+    assert_eq!(labelled(&system, "goal").len(), 1);
+}
+
+#[test]
+fn mistakes_in_maps() {
+    assert_eq!(codes(r#"system W = grid { "..." ".." }"#), [("ragged-map", "\"..\"".to_owned())]);
+    assert_eq!(codes(r#"system W = grid { "..?" }"#), [("unknown-letter", "\"..?\"".to_owned())]);
+    assert_eq!(codes(r#"system W = grid { "@@" }"#)[0].0, "bad-map");
+    assert_eq!(codes(r#"system W = grid { ".." moves up, upp; }"#), [("unknown-move", "upp".to_owned())]);
+    assert_eq!(codes(r#"system W = grid { ".." edge bounce; }"#), [("unknown-rule", "bounce".to_owned())]);
+    assert_eq!(codes(r#"system W = grid { ".." legend 'S' = a; }"#)[0].0, "reserved-name");
+    assert_eq!(codes(r#"system W = grid { ".." edge stay; edge crash; }"#)[0].0, "repeated-item");
+    assert_eq!(codes(r#"system W = grid { ".." state z: 0..1; }"#)[0].0, "not-supported");
+    assert_eq!(codes(r#"system W = grid { ".." action jump; }"#)[0].0, "not-supported");
+    assert_eq!(codes(r#"system W = grid { ".." on up { x' = 0; } }"#)[0].0, "not-supported");
+    assert_eq!(codes("system W { state x: 0..1; moves up; }")[0].0, "misplaced-item");
+    assert_eq!(codes("const x = 1; system W = grid { \"..\" }")[0].0, "duplicate-name");
+}
+
+#[test]
+fn a_broken_map_does_not_cascade() {
+    let text = r#"system W = grid { "..G" ".." label far = x > 1; }
+        objective o { exists p. F[0,3] goal[p] & far[p] & x[p] == 0 }"#;
+    assert_eq!(codes(text), [("ragged-map", "\"..\"".to_owned())]);
+}
+
+const FILE: &str = r#"system W = grid("map.txt") { label at = x == 1; }"#;
+
+#[test]
+fn text_files() {
+    let problem = ok_with(FILE, &[("map.txt", "..G\r\n.#.\r\nS. \r\n\r\n")]).problem;
+    let system = problem.systems.first().expect("a system");
+    assert_eq!(labelled(system, "start"), [vec![int(0), int(0)]]);
+    assert_eq!(system.map.as_ref().expect("a map").obstacles, [(1, 1)]);
+}
+
+fn file_messages(text: &str, files: &'static [(&'static str, &'static str)]) -> Vec<String> {
+    let (lowered, sources) = lowered_with(text, files, &Overrides::none());
+    messages(&lowered, &sources)
+}
+
+#[test]
+fn mistakes_in_files_are_shown_there() {
+    let ragged = file_messages(FILE, &[("map.txt", "...\n..\n...\n")]);
+    assert_eq!(ragged, ["map.txt:2:1 ragged-map: this row has 2 cells, the first one 3"]);
+    let unknown = file_messages(FILE, &[("map.txt", "...\n..?\n")]);
+    assert_eq!(unknown, ["map.txt:2:3 unknown-letter: the letter '?' has no meaning in a map"]);
+    let missing = file_messages(FILE, &[]);
+    assert_eq!(missing, ["test.hp:1:17 cannot-read: cannot read `map.txt`: no such file"]);
+    let empty = file_messages(FILE, &[("map.txt", "\n\n")]);
+    assert_eq!(empty, ["test.hp:1:17 bad-map: the map file `map.txt` is empty"]);
+    let binary = file_messages(FILE, &[("map.txt", "a\0b")]);
+    assert_eq!(binary, ["test.hp:1:17 not-text: `map.txt` is not a text file"]);
+}
+
+#[test]
+fn moving_ai_maps() {
+    let map = "type octile\nheight 3\nwidth 4\nmap\n..G@\nOTW.\nS...\n";
+    let files: &'static [_] = Box::leak(Box::new([("map.txt", map)]));
+    let problem = ok_with(FILE, files).problem;
+    let system = problem.systems.first().expect("a system");
+    let map = system.map.as_ref().expect("a map");
+    assert_eq!((map.width, map.height), (4, 3));
+    assert_eq!(map.obstacles, [(0, 1), (1, 1), (2, 1), (3, 2)]);
+    assert!(system.label("goal").is_none() && system.label("start").is_none());
+}
+
+#[test]
+fn mistakes_in_moving_ai_maps() {
+    let rows = file_messages(FILE, &[("map.txt", "type octile\nheight 3\nwidth 2\nmap\n..\n..\n")]);
+    assert_eq!(rows, ["map.txt:4:1 bad-map: the header says 3 rows, the map has 2"]);
+    let cells = file_messages(FILE, &[("map.txt", "type octile\nheight 2\nwidth 2\nmap\n..\n...\n")]);
+    assert_eq!(cells, ["map.txt:6:1 ragged-map: this row has 3 cells, the header says 2"]);
+    let header = file_messages(FILE, &[("map.txt", "type octile\nheight x\nwidth 2\nmap\n..\n")]);
+    assert_eq!(header.len(), 1);
+    let end = file_messages(FILE, &[("map.txt", "type octile\nheight 2\n")]);
+    assert_eq!(end.len(), 1);
+}
+
+#[test]
+fn ros_maps() {
+    let yaml = "image: \"room.pgm\"\nresolution: 0.05\norigin: [0.0, 0.0, 0.0]\noccupied_thresh: 0.65\n\
+                free_thresh: 0.25\nnegate: 0 # white is free\n";
+    let picture = "P2\n# a comment\n3 2\n255\n255 0 255\n255 255 128\n";
+    let files: &'static [_] = Box::leak(Box::new([("maps/room.yaml", yaml), ("maps/room.pgm", picture)]));
+    let text = r#"system W = grid("maps/room.yaml") { }"#;
+    let problem = ok_with(text, files).problem;
+    let map = problem.systems.first().and_then(|s| s.map.clone()).expect("a map");
+    // The top picture row is y = 1; gray is unknown, and so an obstacle.
+    assert_eq!((map.width, map.height, map.obstacles), (3, 2, vec![(1, 1), (2, 0)]));
+    let raw = crate::grid::pgm::read(b"P5 2 1 255\n\x00\xff", 10).expect("a picture");
+    assert_eq!((raw.at(0, 0), raw.at(1, 0)), (0, 255));
+    for bad in [&b"P5 2 1 255\n\x00"[..], b"P5 2", b"P6 1 1 255\n000", b"P2 1 1 255\n256", b"", b"P2 9 9 9 9"]
+    {
+        assert!(crate::grid::pgm::read(bad, 10).is_err());
+    }
+}
+
+#[test]
+fn a_large_map() {
+    let map = ["type octile\nheight 512\nwidth 512\nmap\n", &format!("{}\n", ".@".repeat(256)).repeat(512)]
+        .concat();
+    let map: &'static str = Box::leak(map.into_boxed_str());
+    let files: &'static [_] = Box::leak(Box::new([("map.txt", map)]));
+    let problem = ok_with(FILE, files).problem;
+    let map = problem.systems.first().and_then(|s| s.map.clone()).expect("a map");
+    assert_eq!(map.obstacles.len(), 512 * 256);
+}

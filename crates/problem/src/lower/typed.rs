@@ -1,0 +1,267 @@
+//! Typed expressions while they are built: with the bounds of integers, and folded where constant.
+
+use crate::expr::{Comparison, Expr, Leaf, Type, Value};
+use std::sync::Arc;
+
+/// Integers stay within `-LIMIT..=LIMIT`, that is in 62 bits with the sign.
+pub(crate) const LIMIT: i128 = (1 << 61) - 1;
+
+/// The values of an enumeration.
+pub(crate) type EnumType = Arc<[String]>;
+
+/// Least and greatest value that an integer expression can take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Bounds {
+    pub(crate) lo: i64,
+    pub(crate) hi: i64,
+}
+
+impl Bounds {
+    /// Exactly one value.
+    pub(crate) fn exactly(value: i64) -> Self {
+        Bounds { lo: value, hi: value }
+    }
+
+    /// Bounds that fit the limit, else `None`.
+    pub(crate) fn new(lo: i128, hi: i128) -> Option<Self> {
+        if lo < -LIMIT || hi > LIMIT {
+            return None;
+        }
+        Some(Bounds { lo: i64::try_from(lo).ok()?, hi: i64::try_from(hi).ok()? })
+    }
+
+    /// The greatest absolute value.
+    fn magnitude(self) -> i128 {
+        i128::from(self.lo).abs().max(i128::from(self.hi).abs())
+    }
+
+    /// The smallest bounds that hold both.
+    pub(crate) fn hull(self, other: Bounds) -> Bounds {
+        Bounds { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
+    }
+
+    fn scaled(self, factor: i64) -> Option<Bounds> {
+        let ends = [self.lo, self.hi].map(|end| i128::from(end) * i128::from(factor));
+        Bounds::new(ends[0].min(ends[1]), ends[0].max(ends[1]))
+    }
+}
+
+/// An expression with its type.
+#[derive(Clone, Debug)]
+pub(crate) enum Typed<L> {
+    /// A truth value.
+    Bool(Expr<L>),
+    /// An integer.
+    Int(Expr<L>, Bounds),
+    /// A value of an enumeration.
+    Enum(Expr<L>, EnumType),
+    /// Something that was reported already; whatever contains it is poisoned too, without a word.
+    Poison,
+}
+
+impl<L> Typed<L> {
+    /// A known integer.
+    pub(crate) fn int(value: i64) -> Self {
+        Typed::Int(Expr::Const(Value::Int(value)), Bounds::exactly(value))
+    }
+
+    /// Something of a declared type.
+    pub(crate) fn of_type(expr: Expr<L>, ty: &Type) -> Self {
+        match ty {
+            Type::Bool => Typed::Bool(expr),
+            Type::Range { lo, hi } => Typed::Int(expr, Bounds { lo: *lo, hi: *hi }),
+            Type::Enum(values) => Typed::Enum(expr, values.clone()),
+        }
+    }
+
+    /// How messages call its type.
+    pub(crate) fn describe(&self) -> String {
+        match self {
+            Typed::Bool(_) => "a truth value".into(),
+            Typed::Int(..) => "an integer".into(),
+            Typed::Enum(_, values) => format!("one of {}", braces(values)),
+            Typed::Poison => "unknown".into(),
+        }
+    }
+
+    /// Its enumeration, if it has one.
+    pub(crate) fn enumeration(&self) -> Option<&EnumType> {
+        match self {
+            Typed::Enum(_, values) => Some(values),
+            _ => None,
+        }
+    }
+}
+
+/// `{a, b, c}`
+pub(crate) fn braces(values: &[String]) -> String {
+    format!("{{{}}}", values.join(", "))
+}
+
+/// The value of a constant truth value.
+fn known_bool<L>(e: &Expr<L>) -> Option<bool> {
+    match e {
+        Expr::Const(Value::Bool(b)) => Some(*b),
+        _ => None,
+    }
+}
+
+/// The value of a constant integer.
+pub(crate) fn known_int<L>(e: &Expr<L>) -> Option<i64> {
+    match e {
+        Expr::Const(Value::Int(n)) => Some(*n),
+        _ => None,
+    }
+}
+
+/// `!e`
+pub(crate) fn not<L>(e: Expr<L>) -> Expr<L> {
+    match e {
+        Expr::Const(Value::Bool(b)) => Expr::Const(Value::Bool(!b)),
+        Expr::Not(inner) => *inner,
+        e => Expr::Not(Box::new(e)),
+    }
+}
+
+/// A conjunction without constant members.
+pub(crate) fn and<L>(es: impl IntoIterator<Item = Expr<L>>) -> Expr<L> {
+    let mut rest: Vec<_> = es.into_iter().filter(|e| !e.is_true()).collect();
+    if rest.iter().any(Expr::is_false) {
+        return Expr::FALSE;
+    }
+    match rest.len() {
+        0 => Expr::TRUE,
+        1 => rest.swap_remove(0),
+        _ => Expr::And(rest),
+    }
+}
+
+/// A disjunction without constant members.
+pub(crate) fn or<L>(es: impl IntoIterator<Item = Expr<L>>) -> Expr<L> {
+    let mut rest: Vec<_> = es.into_iter().filter(|e| !e.is_false()).collect();
+    if rest.iter().any(Expr::is_true) {
+        return Expr::TRUE;
+    }
+    match rest.len() {
+        0 => Expr::FALSE,
+        1 => rest.swap_remove(0),
+        _ => Expr::Or(rest),
+    }
+}
+
+/// `a <-> b`
+pub(crate) fn iff<L>(a: Expr<L>, b: Expr<L>) -> Expr<L> {
+    match (known_bool(&a), known_bool(&b)) {
+        (Some(true), _) => b,
+        (Some(false), _) => not(b),
+        (_, Some(true)) => a,
+        (_, Some(false)) => not(a),
+        _ => Expr::Iff(Box::new(a), Box::new(b)),
+    }
+}
+
+/// A comparison of two integers or enumeration values.
+pub(crate) fn compare<L>(op: Comparison, a: Expr<L>, b: Expr<L>) -> Expr<L> {
+    if let (Expr::Const(a), Expr::Const(b)) = (&a, &b) {
+        return Expr::Const(Value::Bool(match op {
+            Comparison::Eq => a == b,
+            Comparison::Lt => a < b,
+            Comparison::Le => a <= b,
+        }));
+    }
+    Expr::Compare(op, Box::new(a), Box::new(b))
+}
+
+/// A choice between two expressions of one type.
+pub(crate) fn choice<L>(condition: Expr<L>, then: Expr<L>, otherwise: Expr<L>) -> Expr<L> {
+    match known_bool(&condition) {
+        Some(true) => then,
+        Some(false) => otherwise,
+        None => Expr::If(Box::new(condition), Box::new(then), Box::new(otherwise)),
+    }
+}
+
+/// A sum of integers, `None` where it may leave the limit. Every partial sum stays within it too.
+pub(crate) fn sum<L>(terms: Vec<(Expr<L>, Bounds)>) -> Option<(Expr<L>, Bounds)> {
+    let total: i128 = terms.iter().map(|(_, b)| b.magnitude()).sum();
+    if total > LIMIT {
+        return None;
+    }
+    let end = |f: fn(&Bounds) -> i64| terms.iter().map(|(_, b)| i128::from(f(b))).sum::<i128>();
+    let bounds = Bounds::new(end(|b| b.lo), end(|b| b.hi))?;
+    let mut constant = 0;
+    let mut rest = Vec::new();
+    for (term, _) in terms {
+        match known_int(&term) {
+            Some(n) => constant += n,
+            None => rest.push(term),
+        }
+    }
+    if rest.is_empty() {
+        return Some((Expr::Const(Value::Int(constant)), bounds));
+    }
+    if constant != 0 {
+        rest.push(Expr::Const(Value::Int(constant)));
+    }
+    let expr = if rest.len() == 1 { rest.swap_remove(0) } else { Expr::Add(rest) };
+    Some((expr, bounds))
+}
+
+/// A product with a constant, `None` where it may leave the limit.
+pub(crate) fn scale<L>(factor: i64, e: Expr<L>, bounds: Bounds) -> Option<(Expr<L>, Bounds)> {
+    let bounds = bounds.scaled(factor)?;
+    let expr = match (factor, known_int(&e)) {
+        (0, _) => Expr::Const(Value::Int(0)),
+        (_, Some(n)) => Expr::Const(Value::Int(factor * n)),
+        (1, _) => e,
+        _ => Expr::Mul(factor, Box::new(e)),
+    };
+    Some((expr, bounds))
+}
+
+/// Quotient by a positive constant, rounded down.
+pub(crate) fn quotient<L>(e: Expr<L>, bounds: Bounds, by: i64) -> (Expr<L>, Bounds) {
+    let bounds = Bounds { lo: bounds.lo.div_euclid(by), hi: bounds.hi.div_euclid(by) };
+    match known_int(&e) {
+        Some(n) => (Expr::Const(Value::Int(n.div_euclid(by))), bounds),
+        None => (Expr::Div(Box::new(e), by), bounds),
+    }
+}
+
+/// Remainder of [`quotient`].
+pub(crate) fn remainder<L>(e: Expr<L>, bounds: Bounds, by: i64) -> (Expr<L>, Bounds) {
+    if let Some(n) = known_int(&e) {
+        let n = n.rem_euclid(by);
+        return (Expr::Const(Value::Int(n)), Bounds::exactly(n));
+    }
+    let small = bounds.lo >= 0 && bounds.hi < by;
+    let bounds = if small { bounds } else { Bounds { lo: 0, hi: by - 1 } };
+    (Expr::Mod(Box::new(e), by), bounds)
+}
+
+/// Number of nodes of an expression, counted up to `limit`.
+pub(crate) fn size<L>(e: &Expr<L>, limit: usize) -> usize {
+    let mut stack = vec![e];
+    let mut count = 0;
+    while let Some(e) = stack.pop() {
+        count += 1;
+        if count >= limit {
+            return limit;
+        }
+        stack.extend(e.children());
+    }
+    count
+}
+
+/// The labels that an expression reads, by id.
+pub(crate) fn labels_read(e: &Expr<Leaf>) -> Vec<usize> {
+    let mut labels = Vec::new();
+    e.for_each_leaf(&mut |leaf| {
+        if let Leaf::Label(id) = leaf {
+            labels.push(usize::from(*id));
+        }
+    });
+    labels.sort_unstable();
+    labels.dedup();
+    labels
+}

@@ -1,0 +1,116 @@
+//! Discrete transition systems (the paper's Definition 1, with initial states and nondeterminism).
+
+use crate::expr::{Expr, Leaf, Type};
+use crate::ids::{ActionId, LabelId, VarId};
+use hyperplan_syntax::Span;
+use typed_index_collections::TiVec;
+
+/// A transition system, symbolically.
+///
+/// A state gives each variable a value of its type. In a state where [`System::absorb`] holds, every action of the
+/// system leads back to that state and nowhere else. In any other state `s`, a clause that lists action `a` and
+/// whose guard holds in `s` gives transitions `s -a-> s'`: one for each combination of the values that its updates
+/// allow, all expressions read in `s`, variables without an update unchanged; a combination in which some value is
+/// outside its variable's type is no transition. Two ways to the same `s'` with the same action are one transition.
+#[derive(Clone, Debug)]
+pub struct System {
+    /// Its name.
+    pub name: String,
+    /// State variables.
+    pub vars: TiVec<VarId, Var>,
+    /// Its actions, in order of declaration; never empty.
+    pub actions: Vec<ActionId>,
+    /// Transition clauses.
+    pub clauses: Vec<Clause>,
+    /// Initial states.
+    pub init: Expr<Leaf>,
+    /// Labels; a label's expression reads only labels before it.
+    pub labels: TiVec<LabelId, Label>,
+    /// Where every action changes nothing.
+    pub absorb: Expr<Leaf>,
+    /// What `obs` sees.
+    pub observe: Vec<Expr<Leaf>>,
+    /// How to draw it, for maps.
+    pub map: Option<Map>,
+    /// Its declaration.
+    pub span: Span,
+}
+
+/// A state variable.
+#[derive(Clone, Debug)]
+pub struct Var {
+    /// Its name.
+    pub name: String,
+    /// Its type.
+    pub ty: Type,
+    /// Its declaration.
+    pub span: Span,
+}
+
+/// A named set of states.
+#[derive(Clone, Debug)]
+pub struct Label {
+    /// Its name.
+    pub name: String,
+    /// Where it holds.
+    pub expr: Expr<Leaf>,
+    /// Its declaration.
+    pub span: Span,
+}
+
+/// `on ACTIONS when GUARD { UPDATES }`
+#[derive(Clone, Debug)]
+pub struct Clause {
+    /// The actions concerned, without repetition.
+    pub actions: Vec<ActionId>,
+    /// Where it is enabled.
+    pub guard: Expr<Leaf>,
+    /// At most one update a variable.
+    pub updates: Vec<(VarId, Update)>,
+    /// Its place; for a map's moves, the map's declaration.
+    pub span: Span,
+    /// Whether a map's rules made it, not the user.
+    pub generated: bool,
+}
+
+/// What becomes of a variable; expressions read the state before.
+#[derive(Clone, Debug)]
+pub enum Update {
+    /// `v' = E`
+    Assign(Expr<Leaf>),
+    /// `v' in {E, ...}`; never empty
+    OneOf(Vec<Expr<Leaf>>),
+    /// `v' in LO..HI`, constant ends, `lo <= hi`
+    Within(i64, i64),
+}
+
+/// How to draw a map: cells are named by column `x` from the left and row `y` from the bottom.
+#[derive(Clone, Debug)]
+pub struct Map {
+    /// Number of columns.
+    pub width: u32,
+    /// Number of rows.
+    pub height: u32,
+    /// Obstacle cells `(x, y)`, sorted.
+    pub obstacles: Vec<(u32, u32)>,
+    /// The variable that holds the column.
+    pub x: VarId,
+    /// The variable that holds the row.
+    pub y: VarId,
+    /// The variable that says that the robot has crashed, where some rule says `crash`.
+    pub crash: Option<VarId>,
+}
+
+impl System {
+    /// The variable with that name.
+    #[must_use]
+    pub fn var(&self, name: &str) -> Option<VarId> {
+        self.vars.iter_enumerated().find(|(_, v)| v.name == name).map(|(id, _)| id)
+    }
+
+    /// The label with that name.
+    #[must_use]
+    pub fn label(&self, name: &str) -> Option<LabelId> {
+        self.labels.iter_enumerated().find(|(_, l)| l.name == name).map(|(id, _)| id)
+    }
+}

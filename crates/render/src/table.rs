@@ -1,0 +1,76 @@
+//! Traces as tables and lines of text.
+
+use crate::eval::truth;
+use hyperplan_problem::{Objective, Problem, State, System, Trace, Type, Value};
+use std::fmt::Write as _;
+
+/// A table of a trace: time, the action taken there (`-` at the end), and the value of each variable.
+#[must_use]
+pub fn table(problem: &Problem, objective: &Objective, trace: &Trace) -> String {
+    let Some(path) = objective.paths.get(trace.path) else { return String::new() };
+    let system = &problem.systems[path.system];
+    let mut rows = vec![vec!["time".to_owned(), "action".to_owned()]];
+    rows[0].extend(system.vars.iter().map(|v| v.name.clone()));
+    for (time, state) in trace.states.iter().enumerate() {
+        let action = trace.actions.get(time).map_or("-", |a| problem.actions[*a].as_str());
+        let mut row = vec![time.to_string(), action.to_owned()];
+        row.extend(system.vars.iter().zip(state.iter()).map(|(var, value)| in_words(&var.ty, *value)));
+        rows.push(row);
+    }
+    let columns = rows[0].len();
+    let width = |i: usize| rows.iter().filter_map(|r| r.get(i)).map(|c| c.chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let mut out = String::new();
+    for row in &rows {
+        let mut line = String::new();
+        for (i, (text, &width)) in row.iter().zip(&widths).enumerate() {
+            // Numbers are read from the right, names from the left.
+            let _ = if i == 1 { write!(line, "{text:<width$}  ") } else { write!(line, "{text:>width$}  ") };
+        }
+        let _ = writeln!(out, "{}", line.trim_end());
+    }
+    out
+}
+
+fn in_words(ty: &Type, value: Value) -> String {
+    match (value, ty) {
+        (Value::Bool(b), _) => b.to_string(),
+        (Value::Int(n), _) => n.to_string(),
+        (Value::Enum(i), Type::Enum(names)) => names.get(i as usize).cloned().unwrap_or_default(),
+        (Value::Enum(i), _) => i.to_string(),
+    }
+}
+
+/// The actions of a trace on one line, repetitions counted: `right, up x3, stay`. Actions that an absorbing state
+/// makes idle are only counted.
+#[must_use]
+pub fn actions_line(problem: &Problem, objective: &Objective, trace: &Trace) -> String {
+    let Some(path) = objective.paths.get(trace.path) else { return String::new() };
+    let system = &problem.systems[path.system];
+    let moved = trace.states.iter().position(|s| is_absorbing(system, s)).unwrap_or(trace.actions.len());
+    let moved = moved.min(trace.actions.len());
+    let mut runs: Vec<(usize, &str)> = Vec::new();
+    for action in &trace.actions[..moved] {
+        let name = problem.actions[*action].as_str();
+        match runs.last_mut() {
+            Some((count, last)) if *last == name => *count += 1,
+            _ => runs.push((1, name)),
+        }
+    }
+    let run = |(count, name): &(usize, &str)| {
+        if *count == 1 { (*name).to_owned() } else { format!("{name} x{count}") }
+    };
+    let mut parts: Vec<String> = runs.iter().map(run).collect();
+    let idle = trace.actions.len() - moved;
+    if idle > 0 {
+        parts.push(format!("absorbed after {moved} step{}", if moved == 1 { "" } else { "s" }));
+    } else if parts.is_empty() {
+        parts.push("no action".to_owned());
+    }
+    parts.join(", ")
+}
+
+fn is_absorbing(system: &System, state: &State) -> bool {
+    let known: Vec<Option<Value>> = state.iter().copied().map(Some).collect();
+    truth(system, &system.absorb, &known) == Some(true)
+}

@@ -1,0 +1,131 @@
+//! Drawings of small problems, compared as a whole.
+
+use hyperplan_problem::answer::{StrategyFile, to_strategy};
+use hyperplan_problem::{NoFiles, Overrides, Problem, Strategy, read};
+use hyperplan_render::{Error, Scene, TextStyle, actions_line, svg, table, text_map};
+use hyperplan_syntax::SourceMap;
+
+const ROOM: &str = r#"
+system W = grid {
+  "..G"
+  ".#."
+  "SS."
+} {
+  edge crash;
+  obstacle crash;
+  label high = y >= 2;
+  absorb goal;
+}
+objective o { exists p, q. start[p] & start[q] & F[0,4] goal[p] & F[0,4] crash[q] }
+"#;
+
+const WITNESS: &str = r#"{"witness": [
+  {"path": "p", "actions": ["left", "up", "up", "right", "right", "up"], "states": [
+    {"x": 1, "y": 0}, {"x": 0, "y": 0}, {"x": 0, "y": 1}, {"x": 0, "y": 2}, {"x": 1, "y": 2}, {"x": 2, "y": 2},
+    {"x": 2, "y": 2}]},
+  {"path": "q", "actions": ["right", "up"], "states": [
+    {"x": 0, "y": 0}, {"x": 1, "y": 0}, {"x": 1, "y": 0, "crash": true}]}]}"#;
+
+fn problem(text: &str) -> Problem {
+    let lowered = read(&mut SourceMap::new(), "test.hp", text, &NoFiles, &Overrides::none());
+    assert!(!lowered.has_errors(), "{:?}", lowered.diagnostics);
+    lowered.problem
+}
+
+fn strategy(problem: &Problem) -> Strategy {
+    let file = StrategyFile::read_all(WITNESS).expect("JSON").remove(0);
+    let witness = file.witness.expect("given");
+    to_strategy(problem, &problem.objectives[0], &witness).expect("it fits")
+}
+
+fn scene<'a>(problem: &'a Problem, strategy: &'a Strategy) -> Scene<'a> {
+    Scene { problem, objective: problem.objectives.first(), traces: &strategy.traces }
+}
+
+#[test]
+fn a_map_for_each_path() {
+    let problem = problem(ROOM);
+    let strategy = strategy(&problem);
+    let text = text_map(scene(&problem, &strategy), TextStyle::default()).expect("a map");
+    let expected = "\
+p (6 steps):
+2  H→ H→ G*
+1  ↑  #  .
+0  S↑ S← .
+   0  1  2
+
+q (2 steps):
+2  H  H  G
+1  .  #  .
+0  S→ SX .
+   0  1  2
+H high
+";
+    assert_eq!(text, expected);
+}
+
+#[test]
+fn lines_and_tables() {
+    let problem = problem(ROOM);
+    let strategy = strategy(&problem);
+    let objective = &problem.objectives[0];
+    let line = |i: usize| actions_line(&problem, objective, &strategy.traces[i]);
+    assert_eq!(line(0), "left, up x2, right x2, absorbed after 5 steps");
+    assert_eq!(line(1), "right, up");
+    let expected = "\
+time  action  x  y  crash
+   0  right   0  0  false
+   1  up      1  0  false
+   2  -       1  0   true
+";
+    assert_eq!(table(&problem, objective, &strategy.traces[1]), expected);
+}
+
+#[test]
+fn svg_has_paths_marks_and_legend() {
+    let problem = problem(ROOM);
+    let strategy = strategy(&problem);
+    let drawn = svg(scene(&problem, &strategy)).expect("a map");
+    assert_eq!(drawn, svg(scene(&problem, &strategy)).expect("a map"), "the same every time");
+    assert!(drawn.starts_with("<svg ") && drawn.trim_end().ends_with("</svg>"));
+    assert_eq!(drawn.matches("<polyline").count(), 2);
+    for part in
+        ["class=\"start\"", "class=\"goal\"", "class=\"high\"", "p (6 steps)", "q (2 steps)", "S start"]
+    {
+        assert!(drawn.contains(part), "{part}");
+    }
+    let points: Vec<&str> = drawn.match_indices("points=\"").map(|(i, _)| &drawn[i..i + 20]).collect();
+    assert_ne!(points[0], points[1], "paths are drawn beside each other");
+}
+
+#[test]
+fn coordinates_make_a_map() {
+    let problem = problem(
+        "system S { state x: -1..1, y: 5..6, fast: bool; action go; on go { x' = x + 1; }
+           label mark = x == 0 & y == 6; label quick = fast; }
+         objective o { exists p. mark[p] }",
+    );
+    let scene = Scene { problem: &problem, objective: None, traces: &[] };
+    let text = text_map(scene, TextStyle::default()).expect("x and y are integers");
+    // `quick` depends on more than the place, and is left out.
+    assert_eq!(text, "6  .  M  .\n5  .  .  .\n   -1 0  1\nM mark\n");
+}
+
+#[test]
+fn other_systems_are_refused() {
+    let problem = problem("system S { state n: 0..3; } objective o { exists p. n[p] == 0 }");
+    let scene = Scene { problem: &problem, objective: None, traces: &[] };
+    let error = Error::Unsupported { system: "S".to_owned() };
+    assert_eq!(svg(scene), Err(error.clone()));
+    assert_eq!(text_map(scene, TextStyle::default()), Err(error));
+}
+
+#[test]
+fn wide_maps_are_narrow() {
+    let row = ".".repeat(30);
+    let text = format!("system W = grid {{ \"{row}\" }} {{}} objective o {{ exists p. x[p] == 0 }}");
+    let problem = problem(&text);
+    let scene = Scene { problem: &problem, objective: None, traces: &[] };
+    let drawn = text_map(scene, TextStyle::default()).expect("a map");
+    assert_eq!(drawn, format!("0  {row}\n   0         10        20\n"));
+}

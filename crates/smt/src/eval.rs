@@ -1,0 +1,219 @@
+//! Evaluation of terms under a model: a loop over the arena.
+
+use std::cmp::Ordering;
+
+use crate::script::Script;
+use crate::term::{Op, Sort, Term};
+use crate::terms::{Terms, View};
+use crate::value::{Model, Value, mask, signed};
+
+/// What a term or assertion is under a model.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub enum Verdict {
+    /// True.
+    True,
+    /// False.
+    False,
+    /// Quantified, or a number in it does not fit into 128 bits.
+    Unknown,
+}
+
+impl From<Option<bool>> for Verdict {
+    fn from(value: Option<bool>) -> Self {
+        match value {
+            Some(true) => Verdict::True,
+            Some(false) => Verdict::False,
+            None => Verdict::Unknown,
+        }
+    }
+}
+
+/// The operator on values; `numbers` are its indices, such as the bits of an extraction. `None`
+/// where the result does not fit into 128 bits, and for leaves and quantifiers.
+pub(crate) fn apply(op: Op, sort: Sort, args: &[Value], numbers: &[u32]) -> Option<Value> {
+    match op {
+        Op::True | Op::Symbol | Op::Bound | Op::Const | Op::Forall => None,
+        Op::And => args.iter().try_fold(true, |all, v| Some(all & v.as_bool()?)).map(Value::Bool),
+        Op::Eq => Some(Value::Bool(args[0] == args[1])),
+        Op::Ite => Some(if args[0].as_bool()? { args[1] } else { args[2] }),
+        Op::BvAdd | Op::BvMul | Op::BvNeg | Op::SignExtend | Op::ZeroExtend | Op::Extract => {
+            apply_bv(op, sort, args, numbers)
+        }
+        Op::BvUlt => Some(Value::Bool(args[0].as_unsigned()? < args[1].as_unsigned()?)),
+        Op::BvSlt => Some(Value::Bool(args[0].as_signed()? < args[1].as_signed()?)),
+        Op::Add => args[1..].iter().try_fold(args[0], |sum, &v| add(sum, v)),
+        Op::Mul => match (args[0], args[1]) {
+            (Value::Int(a), Value::Int(b)) => Some(Value::Int(a.checked_mul(b)?)),
+            (Value::Real(a), Value::Real(b)) => Some(Value::Real(a.checked_mul(b)?)),
+            _ => None,
+        },
+        Op::Le => match (args[0], args[1]) {
+            (Value::Int(a), Value::Int(b)) => Some(Value::Bool(a <= b)),
+            (Value::Real(a), Value::Real(b)) => Some(Value::Bool(a.checked_cmp(b)? != Ordering::Greater)),
+            _ => None,
+        },
+        // The divisor is positive: Euclidean division is SMT-LIB's.
+        Op::IntDiv => Some(Value::Int(args[0].as_signed()?.checked_div_euclid(args[1].as_signed()?)?)),
+        Op::IntMod => Some(Value::Int(args[0].as_signed()?.checked_rem_euclid(args[1].as_signed()?)?)),
+    }
+}
+
+fn apply_bv(op: Op, sort: Sort, args: &[Value], numbers: &[u32]) -> Option<Value> {
+    let Sort::BitVec(width) = sort else { return None };
+    let Value::Bv { width: from, bits } = args[0] else { return None };
+    let bits = match op {
+        Op::BvAdd => bits.wrapping_add(args[1].as_unsigned()?),
+        Op::BvMul => bits.wrapping_mul(args[1].as_unsigned()?),
+        Op::BvNeg => bits.wrapping_neg(),
+        Op::SignExtend => signed(bits, from) as u128,
+        Op::ZeroExtend => bits,
+        Op::Extract => bits >> numbers.get(1)?,
+        _ => return None,
+    };
+    Some(Value::Bv { width, bits: bits & mask(width) })
+}
+
+fn add(a: Value, b: Value) -> Option<Value> {
+    match (a, b) {
+        (Value::Int(a), Value::Int(b)) => Some(Value::Int(a.checked_add(b)?)),
+        (Value::Real(a), Value::Real(b)) => Some(Value::Real(a.checked_add(b)?)),
+        _ => None,
+    }
+}
+
+/// The values of all terms of an arena under a model.
+pub struct Evaluation {
+    /// Per node: for Booleans 0, 1 or `UNKNOWN`; for the rest an index into `values`.
+    cells: Vec<u32>,
+    values: Vec<Value>,
+}
+
+const UNKNOWN: u32 = u32::MAX;
+
+impl Evaluation {
+    /// Evaluates every term. Symbols without a value are false or zero. Quantified terms are
+    /// unknown, and so is what depends on them.
+    #[must_use]
+    pub fn new(terms: &Terms, model: &Model) -> Self {
+        let mut evaluation = Evaluation { cells: Vec::with_capacity(terms.len()), values: Vec::new() };
+        for t in terms.iter() {
+            let value = evaluation.node(terms, model, t);
+            let cell = match value {
+                None => UNKNOWN,
+                Some(Value::Bool(b)) => u32::from(b),
+                Some(value) => {
+                    evaluation.values.push(value);
+                    (evaluation.values.len() - 1) as u32
+                }
+            };
+            evaluation.cells.push(cell);
+        }
+        evaluation
+    }
+
+    fn node(&self, terms: &Terms, model: &Model, t: Term) -> Option<Value> {
+        let sort = terms.sort(t);
+        match terms.view(t) {
+            View::Const(value) => Some(value),
+            View::Symbol(..) => {
+                let value = model.get(t).filter(|v| v.sort() == sort);
+                Some(value.unwrap_or_else(|| Value::default_of(sort)))
+            }
+            View::Bound(..) | View::Forall(..) => None,
+            View::App(Op::And, conjuncts) => self.and(conjuncts).map(Value::Bool),
+            View::App(Op::Ite, args) => {
+                let chosen = if self.truth(args[0])? { args[1] } else { args[2] };
+                self.value(terms, chosen)
+            }
+            View::App(op, &[a, b]) => apply(op, sort, &[self.value(terms, a)?, self.value(terms, b)?], &[]),
+            View::App(op, args) => {
+                let args: Option<Vec<Value>> = args.iter().map(|&t| self.value(terms, t)).collect();
+                apply(op, sort, &args?, &[])
+            }
+            View::Extend(op, a, by) => apply(op, sort, &[self.value(terms, a)?], &[by]),
+            View::Extract(a, hi, lo) => apply(Op::Extract, sort, &[self.value(terms, a)?], &[hi, lo]),
+        }
+    }
+
+    /// Three-valued conjunction: one false conjunct decides.
+    fn and(&self, conjuncts: &[Term]) -> Option<bool> {
+        let mut result = Some(true);
+        for &t in conjuncts {
+            match self.truth(t) {
+                Some(false) => return Some(false),
+                Some(true) => {}
+                None => result = None,
+            }
+        }
+        result
+    }
+
+    /// The value of a Boolean term.
+    #[must_use]
+    pub fn truth(&self, t: Term) -> Option<bool> {
+        match self.cells[t.index()] {
+            UNKNOWN => None,
+            bit => Some((bit == 1) ^ t.is_negated()),
+        }
+    }
+
+    /// The value of a term of any sort.
+    #[must_use]
+    pub fn value(&self, terms: &Terms, t: Term) -> Option<Value> {
+        if terms.sort(t) == Sort::Bool {
+            return self.truth(t).map(Value::Bool);
+        }
+        match self.cells[t.index()] {
+            UNKNOWN => None,
+            index => Some(self.values[index as usize]),
+        }
+    }
+
+    /// What an assertion, a disjunction, is.
+    #[must_use]
+    pub fn clause(&self, literals: &[Term]) -> Verdict {
+        let mut result = Some(false);
+        for &t in literals {
+            match self.truth(t) {
+                Some(true) => return Verdict::True,
+                Some(false) => {}
+                None => result = None,
+            }
+        }
+        result.into()
+    }
+}
+
+/// The first assertion that is false under the model. Assertions that cannot be evaluated
+/// ([`Verdict::Unknown`]: quantified ones) do not count as violated; [`check_model`] counts them.
+#[must_use]
+pub fn first_violated(script: &Script, model: &Model) -> Option<usize> {
+    check_model(script, model).violated
+}
+
+/// What became of the assertions of a script under a model.
+#[derive(Copy, Clone, PartialEq, Eq, Debug, Default)]
+pub struct ModelCheck {
+    /// The first assertion that is false.
+    pub violated: Option<usize>,
+    /// How many assertions could not be evaluated (up to the violated one, if any).
+    pub unknown: usize,
+}
+
+/// Evaluates every assertion of the script up to the first that is false.
+#[must_use]
+pub fn check_model(script: &Script, model: &Model) -> ModelCheck {
+    let evaluation = Evaluation::new(&script.terms, model);
+    let mut check = ModelCheck::default();
+    for (index, literals) in script.assertions(0).enumerate() {
+        match evaluation.clause(literals) {
+            Verdict::True => {}
+            Verdict::Unknown => check.unknown += 1,
+            Verdict::False => {
+                check.violated = Some(index);
+                break;
+            }
+        }
+    }
+    check
+}

@@ -1,0 +1,71 @@
+//! What a script needs of a solver, and the logic that says so.
+
+use crate::script::Script;
+use crate::term::{Op, Sort, Term};
+use crate::terms::Terms;
+
+/// What occurs in terms.
+#[derive(Copy, Clone, PartialEq, Eq, Debug, Default)]
+pub struct Features {
+    /// A quantifier.
+    pub quantifiers: bool,
+    /// A Boolean symbol or bound variable.
+    pub booleans: bool,
+    /// A term of a bit-vector sort.
+    pub bitvec: bool,
+    /// A term of sort Int.
+    pub int: bool,
+    /// A term of sort Real.
+    pub real: bool,
+}
+
+impl Features {
+    /// What the assertions of a script need.
+    #[must_use]
+    pub fn of(script: &Script) -> Features {
+        let mut features = Features::default();
+        for t in script.used_terms() {
+            features.add(&script.terms, t);
+        }
+        features
+    }
+
+    /// Adds what one node needs, its children apart.
+    pub fn add(&mut self, terms: &Terms, t: Term) {
+        let op = terms.op(t);
+        self.quantifiers |= op == Op::Forall;
+        match terms.sort(t) {
+            Sort::Bool => self.booleans |= matches!(op, Op::Symbol | Op::Bound),
+            Sort::BitVec(_) => self.bitvec = true,
+            Sort::Int => self.int = true,
+            Sort::Real => self.real = true,
+        }
+    }
+
+    /// Both.
+    #[must_use]
+    pub fn union(self, other: Features) -> Features {
+        Features {
+            quantifiers: self.quantifiers | other.quantifiers,
+            booleans: self.booleans | other.booleans,
+            bitvec: self.bitvec | other.bitvec,
+            int: self.int | other.int,
+            real: self.real | other.real,
+        }
+    }
+}
+
+/// The smallest logic for those features. Mixtures of bit-vectors and numbers are in no
+/// competition logic; they get `ALL`.
+#[must_use]
+pub fn logic(features: &Features) -> &'static str {
+    let Features { quantifiers, booleans: _, bitvec, int, real } = *features;
+    match (bitvec, int, real) {
+        (false, false, false) => ["QF_UF", "UF"][usize::from(quantifiers)],
+        (true, false, false) => ["QF_BV", "BV"][usize::from(quantifiers)],
+        (false, true, false) => ["QF_LIA", "LIA"][usize::from(quantifiers)],
+        (false, false, true) => ["QF_LRA", "LRA"][usize::from(quantifiers)],
+        (false, true, true) => ["QF_LIRA", "LIRA"][usize::from(quantifiers)],
+        (true, _, _) => "ALL",
+    }
+}

@@ -1,0 +1,26 @@
+//! SMT terms, scripts and the SMT-LIB 2 writer.
+//!
+//! [`Terms`] is a hash-consed arena of sort-checked terms, [`Script`] a list of assertions over
+//! one, [`write_script`] prints a script as a benchmark of its own, and [`Printer`] feeds one to a
+//! solver bit by bit. [`first_violated`] evaluates a script under a [`Model`]. Nothing here
+//! recurses on the depth of terms, and shared terms are printed once.
+
+mod eval;
+mod features;
+mod name;
+mod rational;
+mod script;
+mod term;
+mod terms;
+mod value;
+mod write;
+
+pub use eval::{Evaluation, ModelCheck, Verdict, check_model, first_violated};
+pub use features::{Features, logic};
+pub use name::symbol_text;
+pub use rational::Rational;
+pub use script::Script;
+pub use term::{Op, Sort, Stem, Term};
+pub use terms::{Terms, View};
+pub use value::{Model, Value};
+pub use write::{Header, Printer, Status, WriteOptions, term_text, value_text, write_script};

@@ -1,0 +1,193 @@
+//! How symbols are called in SMT-LIB. The only place that quotes.
+//!
+//! A symbol is its stem, followed by `@time` where it has one. The mapping is injective and keeps
+//! clear of what SMT-LIB and this writer use themselves:
+//! - `@` in a stem is doubled; `|`, `\`, control characters and `!` are written as `!` escapes;
+//! - a first `$` (our names for shared terms) or `?` (bound variables) is doubled, and a `.`, which
+//!   SMT-LIB reserves as a first character, gets a `!` before it;
+//! - a stem without a time that could be an SMT-LIB word gets a final `@`.
+
+use std::fmt::Write as _;
+use std::io;
+
+use rsmt2::SmtRes;
+use rsmt2::print::{Sort2Smt, Sym2Smt};
+
+use crate::term::{Op, Sort, Term};
+use crate::terms::{Terms, View};
+
+/// A stem as it is written, without time and quotes.
+pub(crate) struct Mangled {
+    text: Box<str>,
+    /// Whether some character needs the symbol to be quoted.
+    quoted: bool,
+    /// Whether it needs a mark where it has no time.
+    word: bool,
+}
+
+impl Mangled {
+    pub(crate) fn new(stem: &str) -> Mangled {
+        let mut text = String::with_capacity(stem.len() + 2);
+        match stem.chars().next() {
+            Some(first @ ('$' | '?')) => text.push(first),
+            Some('.') => text.push('!'),
+            _ => {}
+        }
+        for c in stem.chars() {
+            match c {
+                '@' => text.push_str("@@"),
+                '!' => text.push_str("!!"),
+                '|' => text.push_str("!p"),
+                '\\' => text.push_str("!b"),
+                c if c.is_control() => {
+                    // Writing to a string cannot fail.
+                    let _ = write!(text, "!u{:x};", u32::from(c));
+                }
+                c => text.push(c),
+            }
+        }
+        let simple = |c: char| c.is_ascii_alphanumeric() || "~!@$%^&*_-+=<>.?/".contains(c);
+        let quoted = !text.chars().all(simple) || text.starts_with(|c: char| c.is_ascii_digit() || c == '@');
+        Mangled { quoted: quoted || text.is_empty(), word: is_word(&text), text: text.into() }
+    }
+}
+
+/// Whether SMT-LIB or a solver may have a meaning for the word.
+fn is_word(text: &str) -> bool {
+    const WORDS: &[&str] = &[
+        "true",
+        "false",
+        "not",
+        "and",
+        "or",
+        "xor",
+        "ite",
+        "distinct",
+        "let",
+        "forall",
+        "exists",
+        "par",
+        "as",
+        "match",
+        "div",
+        "mod",
+        "abs",
+        "divisible",
+        "to_real",
+        "to_int",
+        "is_int",
+        "concat",
+        "extract",
+        "select",
+        "store",
+        "const",
+        "is",
+        "lambda",
+        "choice",
+        "root",
+        "pi",
+        "iff",
+        "implies",
+        "if",
+        "nat",
+        "success",
+        "error",
+        "unsupported",
+        "unknown",
+        "sat",
+        "unsat",
+        "logic",
+        "theory",
+        "continued-execution",
+        "immediate-exit",
+        "incomplete",
+        "memout",
+        "BINARY",
+        "DECIMAL",
+        "HEXADECIMAL",
+        "NUMERAL",
+        "STRING",
+    ];
+    const PREFIXES: &[&str] = &[
+        "bv", "ext_", "rotate_", "repeat", "zero_", "sign_", "int2", "nat2", "int.", "real.", "str.", "re.",
+        "seq.", "set.", "bag.", "rel.", "fp", "to_", "from_", "ubv_", "sbv_", "get-", "set-", "tuple",
+    ];
+    WORDS.contains(&text)
+        || !text.bytes().any(|b| b.is_ascii_alphanumeric())
+        || PREFIXES.iter().any(|prefix| text.starts_with(prefix))
+}
+
+/// A symbol or bound variable of an arena, for printing.
+pub(crate) struct SymbolName<'a> {
+    terms: &'a Terms,
+    symbol: Term,
+}
+
+impl<'a> SymbolName<'a> {
+    pub(crate) fn new(terms: &'a Terms, symbol: Term) -> Self {
+        SymbolName { terms, symbol }
+    }
+
+    pub(crate) fn write(&self, w: &mut impl io::Write) -> io::Result<()> {
+        let (stem, time) = match self.terms.view(self.symbol) {
+            View::Symbol(stem, time) | View::Bound(stem, time) => (stem, time),
+            _ => return Err(io::Error::new(io::ErrorKind::InvalidInput, "not a symbol")),
+        };
+        let name = self.terms.mangled(stem);
+        if name.quoted {
+            w.write_all(b"|")?;
+        }
+        if self.terms.op(self.symbol) == Op::Bound {
+            w.write_all(b"?")?;
+        }
+        w.write_all(name.text.as_bytes())?;
+        match time {
+            Some(time) => {
+                w.write_all(b"@")?;
+                write_number(w, time.into())?;
+            }
+            None if name.word => w.write_all(b"@")?,
+            None => {}
+        }
+        if name.quoted {
+            w.write_all(b"|")?;
+        }
+        Ok(())
+    }
+}
+
+impl Sym2Smt for SymbolName<'_> {
+    fn sym_to_smt2<W: io::Write>(&self, w: &mut W, _: ()) -> SmtRes<()> {
+        Ok(self.write(w)?)
+    }
+}
+
+impl Sort2Smt for Sort {
+    fn sort_to_smt2<W: io::Write>(&self, w: &mut W) -> SmtRes<()> {
+        Ok(write!(w, "{self}")?)
+    }
+}
+
+/// A decimal number, without the formatting machinery: the writer writes millions of them.
+pub(crate) fn write_number(w: &mut impl io::Write, mut number: u64) -> io::Result<()> {
+    let mut digits = [0; 20];
+    let mut at = digits.len();
+    loop {
+        at -= 1;
+        digits[at] = b'0' + (number % 10) as u8;
+        number /= 10;
+        if number == 0 {
+            break;
+        }
+    }
+    w.write_all(&digits[at..])
+}
+
+/// How a declared symbol is written, quotes included.
+#[must_use]
+pub fn symbol_text(terms: &Terms, symbol: Term) -> String {
+    let mut text = Vec::new();
+    // Writing to a vector cannot fail, and what is no symbol has no name.
+    let _ = SymbolName::new(terms, symbol).write(&mut text);
+    String::from_utf8_lossy(&text).into_owned()
+}

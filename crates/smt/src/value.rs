@@ -1,0 +1,162 @@
+//! Values of terms, and models.
+
+use rustc_hash::FxHashMap;
+
+use crate::rational::Rational;
+use crate::term::{Sort, Term};
+
+/// The value of a term.
+#[derive(Copy, Clone, PartialEq, Eq, Hash, Debug)]
+pub enum Value {
+    /// A truth value.
+    Bool(bool),
+    /// A bit-vector; the bits above the width are zero.
+    Bv {
+        /// The number of bits, at most 128.
+        width: u32,
+        /// The bits, read as an unsigned number.
+        bits: u128,
+    },
+    /// An integer.
+    Int(i128),
+    /// A rational number.
+    Real(Rational),
+}
+
+impl Value {
+    /// A bit-vector: `value` in two's complement, cut to `width` bits.
+    #[must_use]
+    pub fn bv(value: i128, width: u32) -> Value {
+        Value::Bv { width, bits: (value as u128) & mask(width) }
+    }
+
+    /// Its sort.
+    #[must_use]
+    pub fn sort(self) -> Sort {
+        match self {
+            Value::Bool(_) => Sort::Bool,
+            Value::Bv { width, .. } => Sort::BitVec(width),
+            Value::Int(_) => Sort::Int,
+            Value::Real(_) => Sort::Real,
+        }
+    }
+
+    /// False or zero: what a symbol without a value is taken to be.
+    #[must_use]
+    pub fn default_of(sort: Sort) -> Value {
+        match sort {
+            Sort::Bool => Value::Bool(false),
+            Sort::BitVec(width) => Value::Bv { width, bits: 0 },
+            Sort::Int => Value::Int(0),
+            Sort::Real => Value::Real(Rational::ZERO),
+        }
+    }
+
+    /// The truth value, if it is one.
+    #[must_use]
+    pub fn as_bool(self) -> Option<bool> {
+        match self {
+            Value::Bool(b) => Some(b),
+            Value::Bv { .. } | Value::Int(_) | Value::Real(_) => None,
+        }
+    }
+
+    /// A bit-vector read as an unsigned number.
+    #[must_use]
+    pub fn as_unsigned(self) -> Option<u128> {
+        match self {
+            Value::Bv { bits, .. } => Some(bits),
+            Value::Bool(_) | Value::Int(_) | Value::Real(_) => None,
+        }
+    }
+
+    /// A bit-vector read in two's complement, or an integer.
+    #[must_use]
+    pub fn as_signed(self) -> Option<i128> {
+        match self {
+            Value::Bv { width, bits } => Some(signed(bits, width)),
+            Value::Int(i) => Some(i),
+            Value::Bool(_) | Value::Real(_) => None,
+        }
+    }
+}
+
+/// A word of ones of that width.
+#[inline]
+pub(crate) fn mask(width: u32) -> u128 {
+    if width >= 128 { u128::MAX } else { (1 << width) - 1 }
+}
+
+/// The two's complement reading of the low `width` bits.
+#[inline]
+pub(crate) fn signed(bits: u128, width: u32) -> i128 {
+    let shift = 128 - width;
+    ((bits << shift) as i128) >> shift
+}
+
+/// Values of declared symbols. A symbol that has none counts as false or zero: a model is total.
+#[derive(Clone, Debug, Default)]
+pub struct Model {
+    values: FxHashMap<Term, Value>,
+}
+
+impl Model {
+    /// The model in which everything is false or zero.
+    #[must_use]
+    pub fn new() -> Self {
+        Model::default()
+    }
+
+    /// Sets the value of a symbol; of a complemented Boolean symbol too.
+    pub fn insert(&mut self, symbol: Term, value: Value) {
+        let value = match value {
+            Value::Bool(b) => Value::Bool(b ^ symbol.is_negated()),
+            Value::Bv { .. } | Value::Int(_) | Value::Real(_) => value,
+        };
+        self.values.insert(symbol.positive(), value);
+    }
+
+    /// The value that was set for a symbol, complemented where the handle is.
+    #[must_use]
+    pub fn get(&self, symbol: Term) -> Option<Value> {
+        let value = *self.values.get(&symbol.positive())?;
+        Some(match value {
+            Value::Bool(b) => Value::Bool(b ^ symbol.is_negated()),
+            Value::Bv { .. } | Value::Int(_) | Value::Real(_) => value,
+        })
+    }
+
+    /// The truth value of a Boolean literal; a symbol without a value is false.
+    #[must_use]
+    pub fn is_true(&self, literal: Term) -> bool {
+        self.get(literal).and_then(Value::as_bool).unwrap_or(literal.is_negated())
+    }
+
+    /// How many symbols have a value.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Whether no symbol has a value.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
+}
+
+impl FromIterator<(Term, Value)> for Model {
+    fn from_iter<I: IntoIterator<Item = (Term, Value)>>(values: I) -> Self {
+        let mut model = Model::new();
+        model.extend(values);
+        model
+    }
+}
+
+impl Extend<(Term, Value)> for Model {
+    fn extend<I: IntoIterator<Item = (Term, Value)>>(&mut self, values: I) {
+        for (symbol, value) in values {
+            self.insert(symbol, value);
+        }
+    }
+}

@@ -1,0 +1,217 @@
+//! Prints the assertions of a growing script: declarations, definitions of shared terms, assertions.
+
+use std::io;
+
+use rsmt2::print::{Expr2Smt, Sort2Smt, Sym2Smt};
+
+use super::expression::{Expression, SharedName};
+use super::free::Free;
+use super::io_error;
+use crate::features::Features;
+use crate::name::SymbolName;
+use crate::term::{Op, Term};
+use crate::terms::Terms;
+
+/// Terms deeper than this are cut by definitions: solvers' own parsers may recurse.
+const HEIGHT: u8 = 100;
+
+/// Remembers what of an arena has been declared and defined, so that a script can be printed bit by
+/// bit. Feed what is new to [`Printer::scan`], then [`Printer::declare`], then print each assertion.
+#[derive(Default)]
+pub struct Printer {
+    /// Per node, how often it occurs in what was scanned: 0, 1, or 2 for more.
+    uses: Vec<u8>,
+    /// Per node, whether it was seen to when it was printed: named, or left inline.
+    settled: Vec<bool>,
+    /// Per node, whether a definition has named it.
+    named: Vec<bool>,
+    /// Per node, how deep it is when printed inline.
+    height: Vec<u8>,
+    /// Symbols to be declared.
+    undeclared: Vec<Term>,
+    /// The free variables, with the number of nodes that they were computed for.
+    free: Option<(usize, Free)>,
+    features: Features,
+}
+
+impl Printer {
+    /// A printer that has printed nothing.
+    #[must_use]
+    pub fn new() -> Self {
+        Printer::default()
+    }
+
+    /// What occurs in everything scanned so far.
+    #[must_use]
+    pub fn features(&self) -> Features {
+        self.features
+    }
+
+    /// Takes note of terms that are to be printed: counts what they share.
+    pub fn scan(&mut self, terms: &Terms, roots: &[Term]) {
+        self.uses.resize(terms.len(), 0);
+        self.settled.resize(terms.len(), false);
+        self.named.resize(terms.len(), false);
+        self.height.resize(terms.len(), 0);
+        let mut stack = Vec::new();
+        for &root in roots {
+            self.touch(root, &mut stack);
+            while let Some(t) = stack.pop() {
+                self.features.add(terms, t);
+                if terms.op(t) == Op::Symbol {
+                    self.undeclared.push(t);
+                }
+                for &child in terms.children(t) {
+                    self.touch(child, &mut stack);
+                }
+            }
+        }
+        let quantified = self.features.quantifiers;
+        if quantified && self.free.as_ref().is_none_or(|(count, _)| *count < terms.len()) {
+            self.free = Some((terms.len(), Free::new(terms)));
+        }
+    }
+
+    fn touch(&mut self, t: Term, stack: &mut Vec<Term>) {
+        let uses = &mut self.uses[t.index()];
+        match *uses {
+            0 => {
+                *uses = 1;
+                stack.push(t.positive());
+            }
+            1 => {
+                *uses = 2;
+                // If it was printed inline already, it gets a name now.
+                self.settled[t.index()] = false;
+            }
+            _ => {}
+        }
+    }
+
+    /// Declares the symbols that were found since the last call.
+    ///
+    /// # Errors
+    /// When writing fails.
+    pub fn declare(&mut self, w: &mut impl io::Write, terms: &Terms) -> io::Result<()> {
+        let mut symbols = std::mem::take(&mut self.undeclared);
+        symbols.sort_unstable();
+        for symbol in symbols {
+            w.write_all(b"(declare-fun ")?;
+            SymbolName::new(terms, symbol).sym_to_smt2(w, ()).map_err(io_error)?;
+            w.write_all(b" () ")?;
+            terms.sort(symbol).sort_to_smt2(w).map_err(io_error)?;
+            w.write_all(b")\n")?;
+        }
+        Ok(())
+    }
+
+    /// Prints the definitions that the assertion needs, and the assertion: a disjunction.
+    ///
+    /// # Errors
+    /// When writing fails.
+    pub fn assertion(&mut self, w: &mut impl io::Write, terms: &Terms, literals: &[Term]) -> io::Result<()> {
+        self.define(w, terms, literals)?;
+        w.write_all(b"(assert ")?;
+        if let [only] = literals {
+            self.term(w, terms, *only)?;
+        } else {
+            w.write_all(b"(or")?;
+            for &t in literals {
+                w.write_all(b" ")?;
+                self.term(w, terms, t)?;
+            }
+            w.write_all(b")")?;
+        }
+        w.write_all(b")\n")
+    }
+
+    /// Prints the definitions that are needed to print the terms, which must have been scanned.
+    ///
+    /// # Errors
+    /// When writing fails.
+    pub fn define(&mut self, w: &mut impl io::Write, terms: &Terms, roots: &[Term]) -> io::Result<()> {
+        for t in self.settle(terms, roots) {
+            let children = terms.children(t).iter();
+            let inline = children.filter(|c| !self.named[c.index()]).map(|c| self.height[c.index()]).max();
+            let height = inline.map_or(0, |height| height.saturating_add(1));
+            self.height[t.index()] = height;
+            let shared = self.uses[t.index()] > 1 || height >= HEIGHT;
+            if shared && !terms.children(t).is_empty() {
+                self.define_one(w, terms, t)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The nodes below the roots that were not seen to yet, children before parents.
+    fn settle(&mut self, terms: &Terms, roots: &[Term]) -> Vec<Term> {
+        let mut found = Vec::new();
+        let visit = |t: Term, settled: &mut Vec<bool>, found: &mut Vec<Term>| {
+            if !std::mem::replace(&mut settled[t.index()], true) && terms.op(t) != Op::Symbol {
+                found.push(t.positive());
+            }
+        };
+        for &root in roots {
+            visit(root, &mut self.settled, &mut found);
+        }
+        let mut next = 0;
+        while let Some(&t) = found.get(next) {
+            next += 1;
+            for &child in terms.children(t) {
+                visit(child, &mut self.settled, &mut found);
+            }
+        }
+        found.sort_unstable();
+        found
+    }
+
+    fn define_one(&mut self, w: &mut impl io::Write, terms: &Terms, t: Term) -> io::Result<()> {
+        let closed = self.free.as_ref().is_none_or(|(_, free)| free.is_closed(t));
+        if !closed || self.named[t.index()] {
+            return Ok(());
+        }
+        w.write_all(b"(define-fun ")?;
+        SharedName(t).sym_to_smt2(w, ()).map_err(io_error)?;
+        w.write_all(b" () ")?;
+        terms.sort(t).sort_to_smt2(w).map_err(io_error)?;
+        w.write_all(b" ")?;
+        self.expression(terms, t, true).expr_to_smt2(w, ()).map_err(io_error)?;
+        w.write_all(b")\n")?;
+        self.named[t.index()] = true;
+        Ok(())
+    }
+
+    /// Prints a term whose definitions have been printed.
+    ///
+    /// # Errors
+    /// When writing fails.
+    pub fn term(&self, w: &mut impl io::Write, terms: &Terms, t: Term) -> io::Result<()> {
+        self.expression(terms, t, false).expr_to_smt2(w, ()).map_err(io_error)
+    }
+
+    /// Whether the symbol has occurred in what was scanned.
+    #[must_use]
+    pub fn is_declared(&self, symbol: Term) -> bool {
+        self.uses.get(symbol.index()).is_some_and(|&uses| uses > 0)
+    }
+
+    /// Whether the term is printed as a literal: a symbol or a name, perhaps under `not`.
+    #[must_use]
+    pub fn is_literal(&self, terms: &Terms, t: Term) -> bool {
+        t.is_const() || terms.op(t) == Op::Symbol || self.named.get(t.index()).is_some_and(|&named| named)
+    }
+
+    /// Gives the term a name, whether it is shared or not.
+    ///
+    /// # Errors
+    /// When writing fails.
+    pub fn force_name(&mut self, w: &mut impl io::Write, terms: &Terms, t: Term) -> io::Result<()> {
+        self.define(w, terms, &[t])?;
+        if self.is_literal(terms, t) { Ok(()) } else { self.define_one(w, terms, t.positive()) }
+    }
+
+    fn expression<'a>(&'a self, terms: &'a Terms, term: Term, define: bool) -> Expression<'a> {
+        let free = self.free.as_ref().map(|(_, free)| free);
+        Expression { terms, free, named: &self.named, term, define }
+    }
+}

@@ -1,0 +1,70 @@
+//! When to stop.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// A point in time, if any, and a flag that cancels earlier. Clones share the flag.
+#[derive(Clone, Debug)]
+pub struct Deadline {
+    at: Option<Instant>,
+    cancel: Arc<AtomicBool>,
+}
+
+impl Deadline {
+    /// No point in time; still cancellable.
+    #[must_use]
+    pub fn never() -> Deadline {
+        Deadline { at: None, cancel: Arc::default() }
+    }
+
+    /// So long from now. A duration that the clock cannot hold means never.
+    #[must_use]
+    pub fn after(duration: Duration) -> Deadline {
+        Deadline { at: Instant::now().checked_add(duration), cancel: Arc::default() }
+    }
+
+    /// This deadline or that long from now, whichever is first; the flag is shared.
+    #[must_use]
+    pub fn within(&self, duration: Duration) -> Deadline {
+        let other = Instant::now().checked_add(duration);
+        let at = match (self.at, other) {
+            (Some(a), Some(b)) => Some(a.min(b)),
+            (a, b) => a.or(b),
+        };
+        Deadline { at, cancel: Arc::clone(&self.cancel) }
+    }
+
+    /// Whether it has passed or was cancelled.
+    #[must_use]
+    pub fn passed(&self) -> bool {
+        self.cancelled() || self.at.is_some_and(|at| Instant::now() >= at)
+    }
+
+    /// Whether it was cancelled.
+    #[must_use]
+    pub fn cancelled(&self) -> bool {
+        self.cancel.load(Ordering::Relaxed)
+    }
+
+    /// The flag that cancels when it is set: for signal handlers and other threads.
+    #[must_use]
+    pub fn cancel_flag(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.cancel)
+    }
+
+    /// How long from now; `None` if there is no point in time, zero if it has passed.
+    #[must_use]
+    pub fn remaining(&self) -> Option<Duration> {
+        if self.cancelled() {
+            return Some(Duration::ZERO);
+        }
+        self.at.map(|at| at.saturating_duration_since(Instant::now()))
+    }
+
+    /// Why it stopped: `timeout` or `interrupted`.
+    #[must_use]
+    pub fn reason(&self) -> &'static str {
+        if self.cancelled() { "interrupted" } else { "timeout" }
+    }
+}

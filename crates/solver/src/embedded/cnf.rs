@@ -1,0 +1,293 @@
+//! Terms to clauses, incrementally: Tseitin's transformation by polarity (Plaisted and Greenbaum).
+//!
+//! A Boolean node gets a SAT variable when it is first needed. Its clauses in the direction "the
+//! variable implies the node" are added once it occurs positively, those in the other direction
+//! once it occurs negatively; both may come in different calls. The declared symbols' values in a
+//! model satisfy the script, while inner variables need not equal their nodes.
+//! Bit-vector terms become literals, one per bit, by circuits that hold in both directions.
+
+use hyperplan_smt::{Op, Script, Sort, Term, Terms, Value, View};
+use rustsat::types::Lit;
+
+use super::bits::Gates;
+use crate::error::Error;
+
+const POSITIVE: u8 = 1;
+const NEGATIVE: u8 = 2;
+const BOTH: u8 = 3;
+
+/// What of an arena has been turned into clauses.
+pub(super) struct Cnf {
+    pub(super) gates: Gates,
+    /// Per node: the literal of a Boolean.
+    literals: Vec<Option<Lit>>,
+    /// Per node: the directions whose clauses were added.
+    done: Vec<u8>,
+    /// Per node: where in `bits` a bit-vector's literals start.
+    starts: Vec<Option<u32>>,
+    bits: Vec<Lit>,
+    /// Nodes whose clauses are to be added, with the directions needed.
+    pending: Vec<(Term, u8)>,
+    clause: Vec<Lit>,
+}
+
+impl Cnf {
+    pub(super) fn new(gates: Gates) -> Cnf {
+        Cnf {
+            gates,
+            literals: Vec::new(),
+            done: Vec::new(),
+            starts: Vec::new(),
+            bits: Vec::new(),
+            pending: Vec::new(),
+            clause: Vec::new(),
+        }
+    }
+
+    /// Adds an assertion, a disjunction.
+    pub(super) fn assert(&mut self, script: &Script, literals: &[Term]) -> Result<(), Error> {
+        let terms = &script.terms;
+        self.grow(terms);
+        if let &[only] = literals {
+            self.assert_one(terms, only);
+        } else {
+            self.assert_clause(terms, literals.iter().copied());
+        }
+        self.finish(terms)
+    }
+
+    /// The literal of a Boolean term that will be assumed to be true.
+    pub(super) fn assumption(&mut self, script: &Script, t: Term) -> Result<Lit, Error> {
+        self.grow(&script.terms);
+        let literal = self.literal(&script.terms, t, POSITIVE);
+        self.finish(&script.terms)?;
+        Ok(literal)
+    }
+
+    /// The literal of a declared Boolean symbol, if it has occurred.
+    pub(super) fn known_literal(&self, symbol: Term) -> Option<Lit> {
+        let literal = (*self.literals.get(symbol.index())?)?;
+        Some(if symbol.is_negated() { !literal } else { literal })
+    }
+
+    /// The bits of a declared bit-vector symbol, if it has occurred.
+    pub(super) fn known_bits(&self, symbol: Term, width: u32) -> Option<&[Lit]> {
+        let start = (*self.starts.get(symbol.index())?)? as usize;
+        Some(&self.bits[start..start + width as usize])
+    }
+
+    fn grow(&mut self, terms: &Terms) {
+        self.literals.resize(terms.len(), None);
+        self.done.resize(terms.len(), 0);
+        self.starts.resize(terms.len(), None);
+    }
+
+    /// Conjunctions at the top are taken apart, disjunctions become clauses.
+    fn assert_one(&mut self, terms: &Terms, t: Term) {
+        let mut stack = vec![t];
+        while let Some(t) = stack.pop() {
+            match terms.view(t) {
+                View::App(Op::And, conjuncts) if !t.is_negated() => stack.extend_from_slice(conjuncts),
+                View::App(Op::And, conjuncts) => {
+                    self.assert_clause(terms, conjuncts.iter().map(|&c| !c));
+                }
+                _ => self.assert_clause(terms, std::iter::once(t)),
+            }
+        }
+    }
+
+    fn assert_clause(&mut self, terms: &Terms, literals: impl Iterator<Item = Term>) {
+        let mut clause = std::mem::take(&mut self.clause);
+        clause.clear();
+        for t in literals {
+            clause.push(self.literal(terms, t, POSITIVE));
+        }
+        self.gates.sat.clause(&clause);
+        self.clause = clause;
+    }
+
+    /// The literal of a term that occurs with that polarity; its clauses become pending.
+    fn literal(&mut self, terms: &Terms, t: Term, polarity: u8) -> Lit {
+        if t.is_const() {
+            return self.gates.constant(t == Term::TRUE);
+        }
+        let literal = match self.literals[t.index()] {
+            Some(literal) => literal,
+            None => {
+                let fresh = self.gates.fresh();
+                self.literals[t.index()] = Some(fresh);
+                fresh
+            }
+        };
+        let (literal, needed) = if t.is_negated() { (!literal, flip(polarity)) } else { (literal, polarity) };
+        if needed & !self.done[t.index()] != 0 && !terms.is_symbol(t) {
+            self.pending.push((t.positive(), needed));
+        }
+        literal
+    }
+
+    /// Adds the clauses of all pending nodes and of what they need.
+    fn finish(&mut self, terms: &Terms) -> Result<(), Error> {
+        while let Some((t, needed)) = self.pending.pop() {
+            let missing = needed & !self.done[t.index()];
+            if missing != 0 {
+                self.done[t.index()] |= missing;
+                if let Err(error) = self.node(terms, t, missing) {
+                    self.pending.clear();
+                    return Err(error);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the clauses of one Boolean node in the directions given.
+    fn node(&mut self, terms: &Terms, t: Term, directions: u8) -> Result<(), Error> {
+        let v = self.literal(terms, t, 0);
+        match terms.view(t) {
+            View::App(Op::And, conjuncts) => self.conjunction(terms, v, conjuncts, directions),
+            View::App(Op::Eq, &[a, b]) if terms.sort(a) == Sort::Bool => {
+                let (a, b) = (self.literal(terms, a, BOTH), self.literal(terms, b, BOTH));
+                self.directed(v, directions, &[&[!a, b], &[a, !b]], &[&[a, b], &[!a, !b]]);
+            }
+            View::App(Op::Ite, &[c, a, b]) => {
+                let c = self.literal(terms, c, BOTH);
+                let (a, b) = (self.literal(terms, a, directions), self.literal(terms, b, directions));
+                // The last clause of each is implied; it helps propagation.
+                self.directed(
+                    v,
+                    directions,
+                    &[&[!c, a], &[c, b], &[a, b]],
+                    &[&[!c, !a], &[c, !b], &[!a, !b]],
+                );
+            }
+            View::App(op @ (Op::Eq | Op::BvUlt | Op::BvSlt), &[a, b]) => {
+                let (a, b) = (self.vector(terms, a)?, self.vector(terms, b)?);
+                let g = match op {
+                    Op::Eq => self.gates.equal(&a, &b),
+                    _ => self.gates.less(&a, &b, op == Op::BvSlt),
+                };
+                self.directed(v, directions, &[&[g]], &[&[!g]]);
+            }
+            View::Bound(..) | View::Forall(..) => return Err(unsupported("quantifiers")),
+            _ => return Err(unsupported("integers and reals")),
+        }
+        Ok(())
+    }
+
+    fn conjunction(&mut self, terms: &Terms, v: Lit, conjuncts: &[Term], directions: u8) {
+        let mut clause = std::mem::take(&mut self.clause);
+        clause.clear();
+        for &t in conjuncts {
+            let literal = self.literal(terms, t, directions);
+            if directions & POSITIVE != 0 {
+                self.gates.sat.clause(&[!v, literal]);
+            }
+            clause.push(!literal);
+        }
+        if directions & NEGATIVE != 0 {
+            clause.push(v);
+            self.gates.sat.clause(&clause);
+        }
+        self.clause = clause;
+    }
+
+    /// `v` implies the first clauses, not `v` the second: those whose direction is needed.
+    fn directed(&mut self, v: Lit, directions: u8, positive: &[&[Lit]], negative: &[&[Lit]]) {
+        let mut clause = std::mem::take(&mut self.clause);
+        for (direction, condition, bodies) in [(POSITIVE, !v, positive), (NEGATIVE, v, negative)] {
+            for body in bodies.iter().filter(|_| directions & direction != 0) {
+                clause.clear();
+                clause.push(condition);
+                clause.extend_from_slice(body);
+                self.gates.sat.clause(&clause);
+            }
+        }
+        self.clause = clause;
+    }
+
+    /// The bits of a bit-vector term, after those of everything that it is built from.
+    fn vector(&mut self, terms: &Terms, t: Term) -> Result<Vec<Lit>, Error> {
+        let mut stack = vec![t];
+        while let Some(&t) = stack.last() {
+            if self.starts[t.index()].is_some() {
+                stack.pop();
+                continue;
+            }
+            let before = stack.len();
+            for &child in terms.children(t) {
+                match terms.sort(child) {
+                    Sort::BitVec(_) if self.starts[child.index()].is_none() => stack.push(child),
+                    Sort::BitVec(_) | Sort::Bool => {}
+                    Sort::Int | Sort::Real => return Err(unsupported("integers and reals")),
+                }
+            }
+            if stack.len() == before {
+                stack.pop();
+                let bits = self.circuit(terms, t)?;
+                self.starts[t.index()] = Some(self.bits.len() as u32);
+                self.bits.extend(bits);
+            }
+        }
+        Ok(self.bits_of(terms, t))
+    }
+
+    fn bits_of(&self, terms: &Terms, t: Term) -> Vec<Lit> {
+        let width = match terms.sort(t) {
+            Sort::BitVec(width) => width,
+            Sort::Bool | Sort::Int | Sort::Real => 0,
+        };
+        self.known_bits(t, width).unwrap_or_default().to_vec()
+    }
+
+    /// The circuit of one bit-vector node whose children have their bits.
+    fn circuit(&mut self, terms: &Terms, t: Term) -> Result<Vec<Lit>, Error> {
+        let Sort::BitVec(width) = terms.sort(t) else { return Err(unsupported("integers and reals")) };
+        let bits = match terms.view(t) {
+            View::Const(Value::Bv { bits, .. }) => {
+                (0..width).map(|i| self.gates.constant(bits >> i & 1 == 1)).collect()
+            }
+            View::Symbol(..) => (0..width).map(|_| self.gates.fresh()).collect(),
+            View::Bound(..) | View::Forall(..) => return Err(unsupported("quantifiers")),
+            View::Extend(op, a, by) => {
+                let mut bits = self.bits_of(terms, a);
+                let fill = match (op, bits.last()) {
+                    (Op::SignExtend, Some(&sign)) => sign,
+                    _ => self.gates.constant(false),
+                };
+                bits.extend(std::iter::repeat_n(fill, by as usize));
+                bits
+            }
+            View::Extract(a, hi, lo) => self.bits_of(terms, a)[lo as usize..=hi as usize].to_vec(),
+            View::App(Op::Ite, &[c, a, b]) => {
+                let c = self.literal(terms, c, BOTH);
+                let (a, b) = (self.bits_of(terms, a), self.bits_of(terms, b));
+                self.gates.select(c, &a, &b)
+            }
+            View::App(Op::BvNeg, &[a]) => {
+                let a = self.bits_of(terms, a);
+                self.gates.negate(&a)
+            }
+            View::App(op, &[a, b]) => {
+                let (a, b) = (self.bits_of(terms, a), self.bits_of(terms, b));
+                match op {
+                    Op::BvAdd => self.gates.add(&a, &b, self.gates.constant(false)),
+                    Op::BvMul => self.gates.multiply(&a, &b),
+                    _ => return Err(unsupported(op.name())),
+                }
+            }
+            View::Const(_) | View::App(..) => return Err(unsupported("an operator")),
+        };
+        Ok(bits)
+    }
+}
+
+/// The polarity under a complement.
+fn flip(polarity: u8) -> u8 {
+    (polarity & POSITIVE) << 1 | (polarity & NEGATIVE) >> 1
+}
+
+fn unsupported(what: &str) -> Error {
+    let what = format!("the builtin solver cannot handle {what}: use z3, cvc5 or yices");
+    Error::Unsupported { what }
+}

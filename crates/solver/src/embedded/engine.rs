@@ -1,0 +1,125 @@
+//! The session of the embedded engine.
+
+use hyperplan_smt::{Script, Sort, Term, Value};
+
+use super::backend::Backend;
+use super::bits::Gates;
+use super::cnf::Cnf;
+use crate::deadline::Deadline;
+use crate::error::Error;
+use crate::session::{Answer, Identity, Options, Session};
+
+/// How many assertions are encoded between two looks at the clock.
+const STRIDE: usize = 1 << 12;
+
+/// The embedded engine.
+pub(crate) struct Engine {
+    cnf: Cnf,
+    version: String,
+    /// How many assertions have been encoded.
+    fed: usize,
+    has_model: bool,
+    /// What of the script cannot be handled: from then on there is no answer.
+    unsupported: Option<String>,
+    /// The assertions alone are unsatisfiable; more of them will not change that.
+    refuted: bool,
+}
+
+impl Engine {
+    pub(crate) fn new(options: &Options) -> Result<Engine, Error> {
+        if options.quantified {
+            let what = "the builtin solver cannot handle quantifiers: use z3, cvc5 or yices";
+            return Err(Error::Unsupported { what: what.to_owned() });
+        }
+        let backend = Backend::new(options.seed)?;
+        let version = format!("{} ({})", env!("CARGO_PKG_VERSION"), backend.signature());
+        let cnf = Cnf::new(Gates::new(backend));
+        Ok(Engine { cnf, version, fed: 0, has_model: false, unsupported: None, refuted: false })
+    }
+
+    /// Encodes what is new; false if the deadline came first.
+    fn feed(&mut self, script: &Script, deadline: &Deadline) -> Result<bool, Error> {
+        while self.fed < script.len() {
+            if self.fed.is_multiple_of(STRIDE) && deadline.passed() {
+                return Ok(false);
+            }
+            self.cnf.assert(script, script.assertion(self.fed))?;
+            self.fed += 1;
+        }
+        Ok(true)
+    }
+
+    fn answer(
+        &mut self,
+        script: &Script,
+        assumptions: &[Term],
+        deadline: &Deadline,
+    ) -> Result<Answer, Error> {
+        if !self.feed(script, deadline)? {
+            return Ok(Answer::Unknown(deadline.reason().to_owned()));
+        }
+        let mut literals = Vec::with_capacity(assumptions.len());
+        for &t in assumptions.iter().filter(|&&t| t != Term::TRUE) {
+            literals.push(self.cnf.assumption(script, t)?);
+        }
+        match self.cnf.gates.sat.solve(&literals, deadline)? {
+            Some(true) => {
+                self.has_model = true;
+                Ok(Answer::Sat)
+            }
+            Some(false) => {
+                self.refuted = literals.is_empty();
+                Ok(Answer::Unsat)
+            }
+            None => Ok(Answer::Unknown(deadline.reason().to_owned())),
+        }
+    }
+}
+
+impl Session for Engine {
+    fn check(&mut self, script: &Script, assumptions: &[Term], deadline: &Deadline) -> Result<Answer, Error> {
+        self.has_model = false;
+        if let Some(what) = &self.unsupported {
+            return Err(Error::Unsupported { what: what.clone() });
+        }
+        if self.refuted {
+            return Ok(Answer::Unsat);
+        }
+        let answer = self.answer(script, assumptions, deadline);
+        if let Err(Error::Unsupported { what }) = &answer {
+            self.unsupported = Some(what.clone());
+        }
+        answer
+    }
+
+    fn values(&mut self, script: &Script, symbols: &[Term]) -> Result<Vec<Value>, Error> {
+        if !self.has_model {
+            return Err(Error::NoModel { name: "builtin".to_owned() });
+        }
+        let sat = &self.cnf.gates.sat;
+        let mut values = Vec::with_capacity(symbols.len());
+        for &symbol in symbols {
+            values.push(match script.terms.sort(symbol) {
+                Sort::Bool => {
+                    let literal = self.cnf.known_literal(symbol);
+                    let value = literal.map_or(Ok(symbol.is_negated()), |literal| sat.is_true(literal));
+                    Value::Bool(value?)
+                }
+                Sort::BitVec(width) => {
+                    let mut bits = 0;
+                    let literals = self.cnf.known_bits(symbol, width).unwrap_or_default();
+                    for (i, &literal) in literals.iter().enumerate() {
+                        bits |= u128::from(sat.is_true(literal)?) << i;
+                    }
+                    Value::Bv { width, bits }
+                }
+                sort @ (Sort::Int | Sort::Real) => Value::default_of(sort),
+            });
+        }
+        Ok(values)
+    }
+
+    fn identity(&self) -> Identity {
+        Identity { name: "builtin".to_owned(), version: self.version.clone() }
+    }
+}

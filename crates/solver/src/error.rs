@@ -1,0 +1,93 @@
+//! What can go wrong between us and a solver.
+
+use std::io;
+
+/// A failure of a solver, or of reaching it.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The solver is not installed.
+    #[error("solver {name} was not found (tried {}); {hint}", tried.join(", "))]
+    Missing {
+        /// What was asked for.
+        name: String,
+        /// Where it was sought.
+        tried: Vec<String>,
+        /// How to install it.
+        hint: String,
+    },
+    /// The request is beyond the solver or this version.
+    #[error("{what}")]
+    Unsupported {
+        /// What is not supported, and what would do instead.
+        what: String,
+    },
+    /// The solver ended without an answer.
+    #[error("solver {name} ended without an answer ({status}){}", said_after(last_words))]
+    Crashed {
+        /// The solver.
+        name: String,
+        /// Its exit status.
+        status: String,
+        /// The last thing that it said, on either stream.
+        last_words: String,
+    },
+    /// The solver reported an error.
+    #[error("solver {name} reported an error: {message}")]
+    Reported {
+        /// The solver.
+        name: String,
+        /// Its words.
+        message: String,
+    },
+    /// The solver's reply is not what the dialogue calls for.
+    #[error("solver {name} gave no proper reply to {asked}{}", said_after(said))]
+    Protocol {
+        /// The solver.
+        name: String,
+        /// The command that it replied to.
+        asked: String,
+        /// What it said.
+        said: String,
+    },
+    /// The deadline passed while values were read.
+    #[error("solver {name} gave no values before the deadline")]
+    Deadline {
+        /// The solver.
+        name: String,
+    },
+    /// Values were asked for where the last answer was not sat.
+    #[error("solver {name} has no model: its last answer was not sat")]
+    NoModel {
+        /// The solver.
+        name: String,
+    },
+    /// The embedded SAT solver failed.
+    #[error("solver {name} failed: {message}")]
+    Engine {
+        /// The solver.
+        name: String,
+        /// Its words.
+        message: String,
+    },
+    /// Talking to the operating system failed.
+    #[error("{what}: {source}")]
+    Io {
+        /// What was tried.
+        what: String,
+        /// Why it failed.
+        source: io::Error,
+    },
+}
+
+impl Error {
+    /// Whether the request was at fault rather than the solver.
+    #[must_use]
+    pub fn is_unsupported(&self) -> bool {
+        matches!(self, Error::Unsupported { .. })
+    }
+}
+
+fn said_after(words: &str) -> String {
+    let words = words.trim();
+    if words.is_empty() { String::new() } else { format!("; it said: {words}") }
+}

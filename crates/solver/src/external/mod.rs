@@ -1,0 +1,12 @@
+//! Solvers as processes, spoken to in SMT-LIB 2 over pipes.
+
+mod dialogue;
+mod discover;
+mod process;
+mod profile;
+mod reply;
+mod transcript;
+
+pub(crate) use dialogue::{open_command, open_profile};
+pub use discover::{Found, discover};
+pub(crate) use profile::profile;

@@ -1,0 +1,272 @@
+//! A solver process: its pipes never block us, and it and its children do not outlive us.
+//!
+//! A keeper thread starts the process and writes to it, two threads read its outputs. Sending waits
+//! for a full pipe only while it drains what the solver says, so that a solver that answers early,
+//! floods us or closes its input cannot hang us. The process leads a group of its own, which is
+//! killed whole. On Linux the kernel also kills it when the keeper dies with us; the keeper lives as
+//! long as the session, since that signal follows the thread that started the process.
+
+use std::io::{self, Read, Write};
+use std::path::Path;
+use std::process::{ChildStderr, ChildStdout, Command, ExitStatus, Stdio};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender, TrySendError};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use process_wrap::std::{ChildWrapper, CommandWrap, ProcessGroup};
+
+use super::reply::{Reply, Splitter};
+use crate::deadline::Deadline;
+
+/// How often to look at the clock and the cancel flag while waiting.
+const TICK: Duration = Duration::from_millis(20);
+/// How much of standard error is remembered.
+const TAIL: usize = 4096;
+/// Unread replies while we are still sending: more than this is no dialogue.
+const UNREAD: usize = 10_000;
+
+/// What came of waiting.
+pub(super) enum Next {
+    Reply(Reply),
+    /// The solver closed its output.
+    Ended,
+    /// The deadline came first.
+    Deadline,
+}
+
+/// A running solver process.
+pub(super) struct Process {
+    child: Box<dyn ChildWrapper>,
+    input: SyncSender<Vec<u8>>,
+    output: Receiver<Vec<u8>>,
+    errors: Arc<Mutex<Vec<u8>>>,
+    splitter: Splitter,
+    ended: bool,
+    cut: bool,
+    reaped: bool,
+}
+
+impl Process {
+    pub(super) fn spawn(
+        program: &Path,
+        arguments: &[String],
+        memory_mib: Option<u64>,
+    ) -> io::Result<Process> {
+        let mut command = Command::new(program);
+        command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        prepare(&mut command, memory_mib);
+        let (input, chunks) = mpsc::sync_channel::<Vec<u8>>(16);
+        let (started, start) = mpsc::channel();
+        thread::Builder::new().name("solver input".into()).spawn(move || keep(command, &started, &chunks))?;
+        let ended = || io::Error::other("the thread that starts solvers ended");
+        let mut child = start.recv().map_err(|_| ended())??;
+        let stdout = child.stdout().take().ok_or_else(ended)?;
+        let stderr = child.stderr().take().ok_or_else(ended)?;
+        let (sender, output) = mpsc::sync_channel(16);
+        thread::Builder::new().name("solver output".into()).spawn(move || read_output(stdout, &sender))?;
+        let errors = Arc::new(Mutex::new(Vec::new()));
+        let tail = Arc::clone(&errors);
+        thread::Builder::new().name("solver errors".into()).spawn(move || read_errors(stderr, &tail))?;
+        let splitter = Splitter::default();
+        Ok(Process { child, input, output, errors, splitter, ended: false, cut: false, reaped: false })
+    }
+
+    /// Sends a piece, or stops early: when the solver reports an error, floods us, or the deadline
+    /// passes. What comes next then tells.
+    pub(super) fn send(&mut self, mut piece: Vec<u8>, deadline: &Deadline) {
+        while !self.cut {
+            match self.input.try_send(piece) {
+                Ok(()) | Err(TrySendError::Disconnected(_)) => return,
+                Err(TrySendError::Full(back)) => piece = back,
+            }
+            if self.stuck() || deadline.passed() {
+                self.cut = true;
+                return;
+            }
+            self.drain(if self.ended { TICK } else { Duration::from_millis(1) });
+            if self.ended {
+                return;
+            }
+        }
+    }
+
+    fn stuck(&self) -> bool {
+        self.splitter.has_error() || self.splitter.unread() > UNREAD
+    }
+
+    /// Whether something that was to be sent was not: an answer would not be about all of it.
+    pub(super) fn is_cut(&self) -> bool {
+        self.cut
+    }
+
+    /// Whether to send no more: the solver has reported an error that was not read yet, or floods us.
+    pub(super) fn must_stop(&mut self) -> bool {
+        // A solver that floods us may write as fast as we read.
+        while !self.stuck() {
+            match self.output.try_recv() {
+                Ok(chunk) => self.splitter.feed(&chunk),
+                Err(_) => return false,
+            }
+        }
+        self.cut = true;
+        true
+    }
+
+    /// The next reply.
+    pub(super) fn next(&mut self, deadline: &Deadline) -> Next {
+        loop {
+            if let Some(reply) = self.splitter.next() {
+                return Next::Reply(reply);
+            }
+            if self.ended {
+                return Next::Ended;
+            }
+            if deadline.passed() {
+                return Next::Deadline;
+            }
+            self.drain(deadline.remaining().map_or(TICK, |remaining| remaining.min(TICK)));
+        }
+    }
+
+    /// Takes what the solver has said, waiting at most so long for the first piece.
+    fn drain(&mut self, wait: Duration) {
+        match self.output.recv_timeout(wait) {
+            Ok(chunk) => self.splitter.feed(&chunk),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => {
+                self.ended = true;
+                self.splitter.finish();
+            }
+        }
+    }
+
+    /// The end of what it wrote to standard error.
+    pub(super) fn last_errors(&self) -> String {
+        let tail = self.errors.lock().unwrap_or_else(PoisonError::into_inner);
+        String::from_utf8_lossy(&tail).trim().to_owned()
+    }
+
+    /// Kills the whole group and gives the exit status: the process's own, if it had ended before.
+    pub(super) fn kill(&mut self) -> String {
+        if self.ended {
+            // Output is closed: it is probably about to end by itself, with a status worth showing.
+            self.wait(Duration::from_millis(200));
+        }
+        // Fails only if nothing is left of the group.
+        let _ = self.child.start_kill();
+        match self.wait(Duration::from_secs(2)) {
+            Some(status) => status.to_string(),
+            None => "killed".to_owned(),
+        }
+    }
+
+    fn wait(&mut self, at_most: Duration) -> Option<ExitStatus> {
+        let end = Instant::now() + at_most;
+        loop {
+            if let Ok(Some(status)) = self.child.try_wait() {
+                self.reaped = true;
+                return Some(status);
+            }
+            if Instant::now() >= end {
+                return None;
+            }
+            thread::sleep(Duration::from_millis(2));
+        }
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        if !self.reaped {
+            self.kill();
+        }
+    }
+}
+
+/// Starts the process, then writes to it until the session ends.
+fn keep(
+    command: Command,
+    started: &mpsc::Sender<io::Result<Box<dyn ChildWrapper>>>,
+    chunks: &Receiver<Vec<u8>>,
+) {
+    let child = CommandWrap::from(command).wrap(ProcessGroup::leader()).spawn();
+    let mut stdin = None;
+    let child = child.map(|mut child| {
+        stdin = child.stdin().take();
+        child
+    });
+    // If nobody waits for it, the session was given up; the child dies with this thread.
+    if started.send(child).is_err() {
+        return;
+    }
+    while let Ok(chunk) = chunks.recv() {
+        let written =
+            stdin.as_mut().map_or(Ok(()), |pipe| pipe.write_all(&chunk).and_then(|()| pipe.flush()));
+        if written.is_err() {
+            // The solver reads no more. What it said last is for the readers.
+            stdin = None;
+        }
+    }
+}
+
+fn read_output(mut stdout: ChildStdout, sender: &SyncSender<Vec<u8>>) {
+    let mut buffer = vec![0; 1 << 16];
+    loop {
+        match stdout.read(&mut buffer) {
+            Ok(0) => return,
+            Ok(count) if sender.send(buffer[..count].to_vec()).is_err() => return,
+            Ok(_) => {}
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(_) => return,
+        }
+    }
+}
+
+fn read_errors(mut stderr: ChildStderr, tail: &Mutex<Vec<u8>>) {
+    let mut buffer = vec![0; 4096];
+    loop {
+        match stderr.read(&mut buffer) {
+            Ok(0) => return,
+            Ok(count) => {
+                let mut tail = tail.lock().unwrap_or_else(PoisonError::into_inner);
+                tail.extend_from_slice(&buffer[..count]);
+                let excess = tail.len().saturating_sub(TAIL);
+                tail.drain(..excess);
+            }
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(_) => return,
+        }
+    }
+}
+
+/// Sets the limits that the process gives itself before it becomes the solver.
+#[cfg(target_os = "linux")]
+#[allow(unsafe_code)]
+fn prepare(command: &mut Command, memory_mib: Option<u64>) {
+    use std::os::unix::process::CommandExt as _;
+
+    use rustix::process::{Resource, Rlimit, Signal, getppid, set_parent_process_death_signal, setrlimit};
+
+    let parent = i32::try_from(std::process::id()).ok();
+    let limit = move || -> io::Result<()> {
+        set_parent_process_death_signal(Some(Signal::KILL))?;
+        // If we died between fork and here, no signal will come.
+        if getppid().map(|pid| pid.as_raw_nonzero().get()) != parent {
+            return Err(io::ErrorKind::BrokenPipe.into());
+        }
+        if let Some(bytes) = memory_mib.and_then(|mib| mib.checked_mul(1 << 20)) {
+            setrlimit(Resource::As, Rlimit { current: Some(bytes), maximum: Some(bytes) })?;
+        }
+        Ok(())
+    };
+    // SAFETY: between fork and exec only async-signal-safe work is allowed. The closure makes three
+    // plain system calls through rustix, allocates nothing and takes no locks.
+    unsafe {
+        command.pre_exec(limit);
+    }
+}
+
+/// Elsewhere the process has no limits and is killed only by us.
+#[cfg(not(target_os = "linux"))]
+fn prepare(_: &mut Command, _: Option<u64>) {}

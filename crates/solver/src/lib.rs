@@ -1,0 +1,19 @@
+//! Runs scripts: the embedded engine, and SMT solvers as processes.
+//!
+//! [`open`] starts a [`Session`] for a [`Spec`]; a session takes a growing
+//! [`Script`](hyperplan_smt::Script), answers under assumptions before a [`Deadline`], and gives the
+//! values of symbols. [`discover`] lists the solvers of this machine.
+//!
+//! No answer is trusted here: whoever asks should evaluate the script under the values.
+
+mod deadline;
+#[cfg(any(feature = "cadical", feature = "batsat"))]
+mod embedded;
+mod error;
+mod external;
+mod session;
+
+pub use deadline::Deadline;
+pub use error::Error;
+pub use external::{Found, discover};
+pub use session::{Answer, Identity, Options, Session, Spec, open};

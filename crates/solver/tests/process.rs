@@ -1,0 +1,200 @@
+//! Solvers that misbehave: fakes written as shell scripts.
+#![cfg(unix)]
+
+use std::fs;
+use std::os::unix::fs::PermissionsExt as _;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use hyperplan_smt::{Script, Sort, Term};
+use hyperplan_solver::{Answer, Deadline, Error, Options, Session, Spec, open};
+use tempfile::TempDir;
+
+/// A fake solver.
+fn fake(directory: &TempDir, body: &str) -> PathBuf {
+    let path = directory.path().join("fake");
+    fs::write(&path, format!("#!/bin/sh\n{body}\n")).expect("the directory is ours");
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("the file is ours");
+    path
+}
+
+fn session(program: &Path, options: &Options) -> Box<dyn Session> {
+    let spec = Spec::Command(format!("'{}'", program.display()));
+    open(&spec, options).expect("it was just written")
+}
+
+fn small() -> (Script, Term) {
+    let mut script = Script::new();
+    let stem = script.terms.stem("x");
+    let x = script.terms.symbol(stem, Some(0), Sort::Bool);
+    script.clause(&[x]);
+    (script, x)
+}
+
+fn check(body: &str) -> Result<Answer, Error> {
+    let directory = tempfile::tempdir().expect("a temporary directory");
+    let mut session = session(&fake(&directory, body), &Options::default());
+    session.check(&small().0, &[], &Deadline::after(Duration::from_secs(20)))
+}
+
+fn is_running(pid: &str) -> bool {
+    let status = fs::read_to_string(format!("/proc/{}/stat", pid.trim())).unwrap_or_default();
+    // A zombie has ended.
+    !status.is_empty() && !status.contains(") Z ")
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn the_whole_group_is_killed_at_the_deadline() {
+    let directory = tempfile::tempdir().expect("a temporary directory");
+    let pids = directory.path().join("pids");
+    let body = format!(
+        "trap '' TERM INT HUP\n(trap '' TERM INT HUP; sleep 300) &\necho $! $$ > '{}'\nsleep 300",
+        pids.display()
+    );
+    let mut session = session(&fake(&directory, &body), &Options::default());
+    let start = Instant::now();
+    let answer = session.check(&small().0, &[], &Deadline::after(Duration::from_millis(700)));
+    assert_eq!(answer.expect("no error"), Answer::Unknown("timeout".to_owned()));
+    assert!(start.elapsed() < Duration::from_secs(10));
+    let pids = fs::read_to_string(pids).expect("the fake wrote it");
+    assert_eq!(pids.split_whitespace().count(), 2);
+    for pid in pids.split_whitespace() {
+        // The kernel may take a moment.
+        let gone = (0..200).any(|_| {
+            std::thread::sleep(Duration::from_millis(5));
+            !is_running(pid)
+        });
+        assert!(gone, "process {pid} is still there");
+    }
+}
+
+#[test]
+fn cancelling_ends_the_wait() {
+    let directory = tempfile::tempdir().expect("a temporary directory");
+    let mut session = session(&fake(&directory, "exec sleep 300"), &Options::default());
+    let deadline = Deadline::never();
+    let flag = deadline.cancel_flag();
+    let canceller = std::thread::spawn(move || {
+        std::thread::sleep(Duration::from_millis(200));
+        flag.store(true, std::sync::atomic::Ordering::Relaxed);
+    });
+    let answer = session.check(&small().0, &[], &deadline).expect("no error");
+    assert_eq!(answer, Answer::Unknown("interrupted".to_owned()));
+    canceller.join().expect("it only sleeps");
+}
+
+#[test]
+fn garbage_is_a_protocol_error() {
+    let error = check("cat > /dev/null & echo hello world; sleep 300").expect_err("no answer");
+    assert!(matches!(&error, Error::Protocol { said, .. } if said.contains("hello world")), "{error}");
+    let error = check("head -c 200000 /dev/zero; sleep 300").expect_err("no answer");
+    assert!(matches!(error, Error::Protocol { .. }), "{error}");
+    let error = check("echo ')))'; sleep 300").expect_err("no answer");
+    assert!(matches!(error, Error::Protocol { .. }), "{error}");
+}
+
+#[test]
+fn a_crash_tells_the_last_words_and_the_status() {
+    let error = check("echo 'out of luck' >&2; exit 7").expect_err("no answer");
+    let text = error.to_string();
+    assert!(matches!(error, Error::Crashed { .. }), "{text}");
+    assert!(text.contains("out of luck") && text.contains('7') && text.contains("fake"), "{text}");
+    let error = check("printf '(error \"lin'; exit 0").expect_err("no answer");
+    assert!(matches!(error, Error::Protocol { .. } | Error::Crashed { .. }), "{error}");
+}
+
+#[test]
+fn errors_are_reported_even_if_an_answer_follows() {
+    let error =
+        check("echo '(error \"line 3: no (such) thing\")'; echo sat; sleep 300").expect_err("an error");
+    assert!(
+        matches!(&error, Error::Reported { message, .. } if message == "line 3: no (such) thing"),
+        "{error}"
+    );
+}
+
+#[test]
+fn what_may_come_before_an_answer_is_skipped() {
+    let answer =
+        check("printf '\\r\\n; hello\\nunsupported\\n; ignored\\nWARNING: old\\nunsat\\r\\n'; sleep 300");
+    assert_eq!(answer.expect("an answer"), Answer::Unsat);
+}
+
+#[test]
+fn a_solver_that_reads_nothing_and_floods_cannot_hang_us() {
+    let directory = tempfile::tempdir().expect("a temporary directory");
+    let body = "exec yes '(error \"no\")'";
+    let mut session = session(&fake(&directory, body), &Options::default());
+    let mut script = Script::new();
+    let stem = script.terms.stem("a rather long name of a symbol");
+    for i in 0..200_000 {
+        let x = script.terms.symbol(stem, Some(i), Sort::Bool);
+        script.clause(&[x]);
+    }
+    let start = Instant::now();
+    let error = session.check(&script, &[], &Deadline::after(Duration::from_secs(60))).expect_err("an error");
+    assert!(matches!(error, Error::Reported { .. }), "{error}");
+    assert!(start.elapsed() < Duration::from_secs(30));
+}
+
+#[test]
+fn a_solver_that_closes_its_input_may_still_answer() {
+    let directory = tempfile::tempdir().expect("a temporary directory");
+    let mut session =
+        session(&fake(&directory, "exec <&-; sleep 0.2; echo unsat; sleep 300"), &Options::default());
+    let mut script = Script::new();
+    let stem = script.terms.stem("x");
+    for i in 0..200_000 {
+        let x = script.terms.symbol(stem, Some(i), Sort::Bool);
+        script.clause(&[x]);
+    }
+    let answer = session.check(&script, &[], &Deadline::after(Duration::from_secs(60)));
+    assert_eq!(answer.expect("an answer"), Answer::Unsat);
+}
+
+#[test]
+fn values_must_be_as_many_and_of_the_right_sort() {
+    for reply in ["((x true) (y true))", "((x 5))", "()", "((x", "nothing", "((x (as @f Bool)))"] {
+        let directory = tempfile::tempdir().expect("a temporary directory");
+        let body = format!(
+            "while read line; do case $line in\n*check-sat*) echo sat;;\n*get-value*) echo '{reply}'; exit;;\nesac; done"
+        );
+        let mut session = session(&fake(&directory, &body), &Options::default());
+        let (script, x) = small();
+        let deadline = Deadline::after(Duration::from_secs(20));
+        assert_eq!(session.check(&script, &[], &deadline).expect("an answer"), Answer::Sat);
+        let error = session.values(&script, &[x]).expect_err(reply);
+        assert!(matches!(error, Error::Protocol { .. } | Error::Crashed { .. }), "{reply}: {error}");
+        // The session is over; it has no model any more.
+        assert!(matches!(session.values(&script, &[x]), Err(Error::NoModel { .. })));
+    }
+}
+
+#[test]
+fn queries_are_kept_and_can_be_replayed() {
+    let directory = tempfile::tempdir().expect("a temporary directory");
+    let queries = directory.path().join("queries");
+    let options = Options { queries: Some(queries.clone()), ..Options::default() };
+    let body = "while read line; do case $line in *check-sat*) echo sat;; *get-value*) echo '((x@0 true))';; esac; done";
+    let (script, x) = small();
+    let mut session = session(&fake(&directory, body), &options);
+    session.check(&script, &[], &Deadline::never()).expect("an answer");
+    session.values(&script, &[x]).expect("values");
+    drop(session);
+    let kept = fs::read_to_string(queries.join("0001-fake.smt2")).expect("a file");
+    assert!(kept.starts_with("(set-option"), "{kept}");
+    assert!(kept.contains("(assert x@0)\n(check-sat)\n(get-value ( x@0))\n(exit)\n"), "{kept}");
+}
+
+#[test]
+fn missing_solvers_say_where_they_were_sought() {
+    let spec: Spec = "no-such-solver --flag".parse().expect("any command line will do");
+    let Err(error) = open(&spec, &Options::default()) else { panic!("it does not exist") };
+    assert!(
+        matches!(&error, Error::Missing { name, tried, .. } if name == "no-such-solver" && !tried.is_empty())
+    );
+    assert!("z3,cvc5".parse::<Spec>().is_err());
+    assert_eq!("yices-smt2".parse::<Spec>().expect("known"), Spec::Profile("yices".to_owned()));
+    assert_eq!("builtin".parse::<Spec>().expect("known"), Spec::Builtin);
+}

@@ -1,0 +1,49 @@
+//! All solvers against brute force, on random scripts that grow between checks under assumptions.
+
+mod common;
+
+use common::{Growing, Random, installed};
+use hyperplan_smt::Term;
+use hyperplan_solver::{Answer, Deadline, Options, Spec, open};
+
+fn agrees(spec: &Spec, seeds: std::ops::Range<u64>) {
+    let options = Options { incremental: true, ..Options::default() };
+    let (mut sat, mut unsat) = (0, 0);
+    for seed in seeds {
+        let mut random = Random(seed);
+        let mut growing = Growing::new();
+        let mut session = open(spec, &options).expect("it is installed");
+        for round in 0..6 {
+            let context = format!("{spec:?}, seed {seed}, round {round}");
+            for _ in 0..12 {
+                growing.step(&mut random);
+            }
+            growing.assert_some(&mut random);
+            let assumptions: Vec<Term> = (0..random.below(3)).map(|_| growing.pick(&mut random)).collect();
+            let answer = session.check(&growing.script, &assumptions, &Deadline::never()).expect(&context);
+            if growing.brute_force(&assumptions) {
+                assert_eq!(answer, Answer::Sat, "{context}");
+                growing.check_model(session.as_mut(), &assumptions, &context);
+                sat += 1;
+            } else {
+                assert_eq!(answer, Answer::Unsat, "{context}");
+                assert!(session.values(&growing.script, &growing.symbols).is_err(), "{context}");
+                unsat += 1;
+            }
+        }
+    }
+    assert!(sat > 20 && unsat > 20, "{sat} sat, {unsat} unsat: too one-sided");
+}
+
+#[cfg(any(feature = "cadical", feature = "batsat"))]
+#[test]
+fn builtin_agrees_with_brute_force() {
+    agrees(&Spec::Builtin, 0..600);
+}
+
+#[test]
+fn external_solvers_agree_with_brute_force() {
+    for name in installed(&["z3", "cvc5", "yices"]) {
+        agrees(&Spec::Profile(name), 0..40);
+    }
+}

@@ -1,0 +1,219 @@
+//! From text to tokens (nom, with places by nom_locate).
+//!
+//! The lexer never fails: what is no token becomes [`Tok::Bad`], reported here and passed over in
+//! silence by the parser. Text with control characters is not read at all.
+
+use nom::branch::alt;
+use nom::bytes::complete::{is_not, tag, take_until, take_while, take_while1};
+use nom::character::complete::{char, digit1, none_of, not_line_ending, satisfy};
+use nom::combinator::{map, opt, recognize, rest, value};
+use nom::error::{Error, ErrorKind};
+use nom::multi::many0_count;
+use nom::sequence::{delimited, pair, preceded, terminated};
+use nom::{IResult, Input as _, Parser};
+use nom_locate::LocatedSpan;
+
+use crate::diagnostic::Diagnostic;
+use crate::span::{SourceId, Span};
+use crate::token::{RESERVED, SYMBOLS, Tok, Token};
+
+type Input<'a> = LocatedSpan<&'a str>;
+type Lexed<'a, T> = IResult<Input<'a>, T>;
+
+/// More bad places than this are not worth telling one by one.
+const MAX_ERRORS: usize = 20;
+
+/// What a piece of text is: a token, or a mistake.
+#[derive(Clone, Copy)]
+enum Lexeme {
+    Good(Tok),
+    Character,
+    UnclosedString,
+    UnclosedQuote,
+    Number,
+    BlockComment,
+}
+
+/// The tokens of `text`, the last one [`Tok::Eof`]; or an error if it is no text at all.
+pub(crate) fn lex(source: SourceId, text: &str) -> (Vec<Token<'_>>, Vec<Diagnostic>) {
+    let mut errors = Vec::new();
+    let mut tokens = Vec::new();
+    let end = text.trim_end().len();
+    if let Some(error) = not_text(source, text) {
+        errors.push(error);
+    } else {
+        read(source, text, &mut tokens, &mut errors);
+    }
+    tokens.push(Token { tok: Tok::Eof, text: "", span: Span::new(source, end..end), first_on_line: true });
+    (tokens, errors)
+}
+
+fn read<'a>(source: SourceId, text: &'a str, tokens: &mut Vec<Token<'a>>, errors: &mut Vec<Diagnostic>) {
+    let mut input = Input::new(text.strip_prefix('\u{feff}').unwrap_or(text));
+    let skipped = text.len() - input.fragment().len();
+    let mut line = 0;
+    loop {
+        input = blanks(input);
+        // A prime belongs to the word it touches; elsewhere `'` opens a quoted letter.
+        let touches_word = |last: &Token<'_>| last.span.end as usize == input.location_offset() + skipped;
+        let after_word = tokens.last().is_some_and(|last| last.tok == Tok::Ident && touches_word(last));
+        let Ok((next, (lexeme, piece))) = lexeme(input, after_word) else { return };
+        let start = piece.location_offset() + skipped;
+        let span = Span::new(source, start..start + piece.fragment().len());
+        let first_on_line = tokens.is_empty() || piece.location_line() != line;
+        line = piece.location_line();
+        let tok = match lexeme {
+            Lexeme::Good(tok) => tok,
+            bad => {
+                if errors.len() < MAX_ERRORS {
+                    errors.push(complaint(bad, &piece, span));
+                }
+                Tok::Bad
+            }
+        };
+        tokens.push(Token { tok, text: piece.into_fragment(), span, first_on_line });
+        input = next;
+    }
+}
+
+/// An error if the text is binary data or too large for [`Span`].
+fn not_text(source: SourceId, text: &str) -> Option<Diagnostic> {
+    if u32::try_from(text.len()).is_err() {
+        return Some(Diagnostic::error_nowhere("too-large", "the file is larger than 4 GiB"));
+    }
+    let control = |c: char| c.is_control() && !c.is_whitespace();
+    let (at, found) = text.char_indices().find(|&(_, c)| control(c))?;
+    let span = Span::new(source, at..at + found.len_utf8());
+    let message = format!("this is not a text file: it has the control character U+{:04X}", u32::from(found));
+    Some(Diagnostic::error("not-text", span, message))
+}
+
+fn complaint(what: Lexeme, piece: &Input<'_>, span: Span) -> Diagnostic {
+    let text = piece.fragment();
+    match what {
+        Lexeme::UnclosedString => {
+            Diagnostic::error("unclosed-string", span, "this string has no closing `\"`")
+                .with_help("a string ends on the line where it begins")
+        }
+        Lexeme::UnclosedQuote => {
+            Diagnostic::error("unclosed-string", span, "a quote `'` stands around one character")
+                .with_help("write `'W'`; the prime of an update `x'` stands directly after its variable")
+        }
+        Lexeme::Number => {
+            Diagnostic::error("bad-number", span, format!("`{text}` is neither a number nor a name"))
+                .with_help(
+                    "numbers are digits, with a fraction for reals: `12`, `0.5`; names begin with a letter",
+                )
+        }
+        Lexeme::BlockComment => {
+            Diagnostic::error("bad-comment", span, "block comments are not part of the language")
+                .with_help("write `//` in front of every line")
+        }
+        Lexeme::Good(_) | Lexeme::Character => {
+            let shown: String = text.chars().take(20).flat_map(char::escape_debug).collect();
+            let message = if text.chars().nth(1).is_some() {
+                format!("unexpected characters `{shown}`")
+            } else {
+                format!("unexpected character `{shown}`")
+            };
+            let error = Diagnostic::error("bad-character", span, message);
+            if text.chars().any(char::is_alphabetic) {
+                return error.with_help("names consist of the letters a-z and A-Z, digits, and `_`");
+            }
+            error
+        }
+    }
+}
+
+/// Passes over blanks and comments.
+fn blanks(input: Input<'_>) -> Input<'_> {
+    let blank = value((), take_while1(char::is_whitespace));
+    let comment = value((), pair(tag("//"), not_line_ending));
+    let skipped: Lexed<'_, usize> = many0_count(alt((blank, comment))).parse(input);
+    skipped.map_or(input, |(rest, _)| rest)
+}
+
+fn lexeme<'a>(input: Input<'a>, after_word: bool) -> Lexed<'a, (Lexeme, Input<'a>)> {
+    if after_word && let Ok((rest, piece)) = tag::<_, _, Error<Input<'a>>>("'")(input) {
+        return Ok((rest, (Lexeme::Good(Tok::Prime), piece)));
+    }
+    alt((word, number, string, quoted, block_comment, symbol, other)).parse(input)
+}
+
+fn word(input: Input<'_>) -> Lexed<'_, (Lexeme, Input<'_>)> {
+    let letter = satisfy(|c| c.is_ascii_alphabetic() || c == '_');
+    let (rest, piece) = recognize(pair(letter, take_while(is_word_character))).parse(input)?;
+    let reserved = RESERVED.iter().find(|(word, _)| word == piece.fragment());
+    Ok((rest, (Lexeme::Good(reserved.map_or(Tok::Ident, |&(_, tok)| tok)), piece)))
+}
+
+fn is_word_character(c: char) -> bool {
+    c.is_ascii_alphanumeric() || c == '_'
+}
+
+/// Digits, with a fraction only where a digit follows the point: `0..2` begins with the number `0`.
+fn number(input: Input<'_>) -> Lexed<'_, (Lexeme, Input<'_>)> {
+    let fraction = pair(char('.'), digit1);
+    let (rest, piece) = recognize(pair(digit1, opt(fraction))).parse(input)?;
+    let (after, tail) = take_while(is_word_character)(rest)?;
+    if tail.fragment().is_empty() {
+        return Ok((rest, (Lexeme::Good(Tok::Number), piece)));
+    }
+    let length = piece.fragment().len() + tail.fragment().len();
+    Ok((after, (Lexeme::Number, input.take(length))))
+}
+
+fn string(input: Input<'_>) -> Lexed<'_, (Lexeme, Input<'_>)> {
+    let inside =
+        many0_count(alt((value((), is_not("\"\\\r\n")), value((), preceded(char('\\'), none_of("\r\n"))))));
+    let closed = recognize(delimited(char('"'), inside, char('"')));
+    let unclosed = recognize(pair(char('"'), not_line_ending));
+    alt((
+        map(closed, |piece| (Lexeme::Good(Tok::Str), piece)),
+        map(unclosed, |piece| (Lexeme::UnclosedString, piece)),
+    ))
+    .parse(input)
+}
+
+fn quoted(input: Input<'_>) -> Lexed<'_, (Lexeme, Input<'_>)> {
+    let letter = recognize(delimited(char('\''), none_of("'\r\n"), char('\'')));
+    let wrong = recognize(pair(char('\''), opt(terminated(is_not("'\r\n"), char('\'')))));
+    alt((
+        map(letter, |piece| (Lexeme::Good(Tok::Char), piece)),
+        map(wrong, |piece| (Lexeme::UnclosedQuote, piece)),
+    ))
+    .parse(input)
+}
+
+fn block_comment(input: Input<'_>) -> Lexed<'_, (Lexeme, Input<'_>)> {
+    let closed = recognize((tag("/*"), take_until("*/"), tag("*/")));
+    let unclosed = recognize(pair(tag("/*"), rest));
+    map(alt((closed, unclosed)), |piece| (Lexeme::BlockComment, piece)).parse(input)
+}
+
+fn symbol(input: Input<'_>) -> Lexed<'_, (Lexeme, Input<'_>)> {
+    let text = *input.fragment();
+    let Some(&(sign, tok)) = SYMBOLS.iter().find(|(sign, _)| text.starts_with(sign)) else {
+        return Err(nom::Err::Error(Error::new(input, ErrorKind::Tag)));
+    };
+    let (rest, piece) = input.take_split(sign.len());
+    Ok((rest, (Lexeme::Good(tok), piece)))
+}
+
+/// A run of characters that begin no token.
+fn other(input: Input<'_>) -> Lexed<'_, (Lexeme, Input<'_>)> {
+    let text = *input.fragment();
+    let begins_token = |at: usize, c: char| {
+        c.is_whitespace()
+            || is_word_character(c)
+            || matches!(c, '"' | '\'')
+            || SYMBOLS.iter().any(|(sign, _)| text[at..].starts_with(sign))
+    };
+    let end =
+        text.char_indices().skip(1).find(|&(at, c)| begins_token(at, c)).map_or(text.len(), |(at, _)| at);
+    if end == 0 {
+        return Err(nom::Err::Error(Error::new(input, ErrorKind::Eof)));
+    }
+    let (rest, piece) = input.take_split(end);
+    Ok((rest, (Lexeme::Character, piece)))
+}

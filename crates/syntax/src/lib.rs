@@ -1,0 +1,17 @@
+//! From text to syntax tree: the problem language of `docs/language.md`, with places and diagnostics.
+
+pub mod ast;
+mod diagnostic;
+mod excerpt;
+mod lexer;
+mod parser;
+mod render;
+mod similar;
+mod span;
+mod token;
+
+pub use diagnostic::{Diagnostic, Severity};
+pub use parser::{MAX_NESTING, parse};
+pub use render::{JsonDiagnostic, JsonPlace, JsonRelated, render, to_json};
+pub use similar::similar;
+pub use span::{Source, SourceId, SourceMap, Span};

@@ -1,0 +1,327 @@
+//! Expressions and formulas, by operator precedence.
+//!
+//! Operators wait on a stack for their right operand, so that chains and prefixes cost no call
+//! stack. Every node knows its height, which [`MAX_NESTING`] bounds. Where `inline(never)` stands,
+//! it keeps the frames of the functions that do recurse small.
+
+use super::operator::{Infix, Prefix, level};
+use super::{Abort, MAX_NESTING, Parse, Parser};
+use crate::ast::{Expr, ExprKind, Interval, UnaryOp};
+use crate::diagnostic::Diagnostic;
+use crate::span::Span;
+use crate::token::Tok;
+
+/// An expression on its way into the tree. Small, since the call stack holds many of them.
+pub(super) struct Node {
+    pub(super) expr: Box<Expr>,
+    /// With the parentheses around it.
+    pub(super) outer: Span,
+    /// Of the tree below.
+    pub(super) height: u32,
+}
+
+impl Node {
+    pub(super) fn leaf(kind: ExprKind, span: Span) -> Node {
+        Node { expr: Box::new(Expr { kind, span }), outer: span, height: 1 }
+    }
+
+    /// A comparison that no parentheses protect.
+    fn is_bare_comparison(&self) -> bool {
+        self.outer == self.expr.span && matches!(self.expr.kind, ExprKind::Compare(..) | ExprKind::In(..))
+    }
+}
+
+/// An interval and the height of its bounds.
+pub(super) type Bounds = Option<(Interval, u32)>;
+
+/// An operator that waits for its right operand.
+enum Pending {
+    Prefix {
+        op: Prefix,
+        bounds: Bounds,
+        span: Span,
+    },
+    Infix {
+        op: Infix,
+        bounds: Bounds,
+        span: Span,
+        left: Node,
+    },
+    /// `&`, `|`, or `+` and `-`: what stands to the left, and whether the next operand is subtracted.
+    Flat {
+        op: Infix,
+        items: Vec<(bool, Expr)>,
+        start: Span,
+        height: u32,
+        minus: bool,
+    },
+}
+
+impl Pending {
+    fn level(&self) -> u8 {
+        match self {
+            Pending::Prefix { op, .. } => op.level(),
+            Pending::Infix { op, .. } | Pending::Flat { op, .. } => op.level(),
+        }
+    }
+}
+
+impl Parser<'_> {
+    /// A whole expression or formula.
+    pub(super) fn expr(&mut self) -> Parse<Expr> {
+        Ok(*self.node(level::LOWEST)?.expr)
+    }
+
+    /// An expression without comparisons and logic, as bounds are.
+    pub(super) fn arithmetic(&mut self) -> Parse<Expr> {
+        Ok(*self.node(level::SUM)?.expr)
+    }
+
+    /// An expression of operators that bind at least as tightly as `least`.
+    pub(super) fn node(&mut self, least: u8) -> Parse<Node> {
+        if self.depth >= MAX_NESTING {
+            return self.too_deep(self.token().span);
+        }
+        self.depth += 1;
+        let node = self.operators(least);
+        self.depth -= 1;
+        node
+    }
+
+    #[inline(never)]
+    fn too_deep<T>(&mut self, span: Span) -> Parse<T> {
+        let message = format!("this expression is nested more than {MAX_NESTING} levels deep");
+        self.report(
+            Diagnostic::error("too-deep", span, message).with_help("name parts of it by `define` or `label`"),
+        );
+        Err(Abort)
+    }
+
+    fn operators(&mut self, least: u8) -> Parse<Node> {
+        let mut stack = Vec::new();
+        loop {
+            self.prefixes(&mut stack)?;
+            let mut node = self.operand(least)?;
+            loop {
+                let Some((op, span)) = self.infix(least) else {
+                    return self.reduce(&mut stack, node, None);
+                };
+                node = self.reduce(&mut stack, node, Some(op))?;
+                if op.level() == level::COMPARE && node.is_bare_comparison() {
+                    self.report(
+                        Diagnostic::error("chained-comparison", span, "comparisons cannot be chained")
+                            .with_help("write `a < b & b < c`, or put parentheses around one of them"),
+                    );
+                }
+                if op == Infix::In {
+                    node = self.membership(node)?;
+                } else {
+                    self.shift(&mut stack, op, span, node)?;
+                    break;
+                }
+            }
+        }
+    }
+
+    /// Puts `node OP` on the stack.
+    #[inline(never)]
+    fn shift(&mut self, stack: &mut Vec<Pending>, op: Infix, span: Span, node: Node) -> Parse<()> {
+        if stack.len() >= MAX_NESTING as usize {
+            return self.too_deep(span);
+        }
+        if !op.is_flat() {
+            let bounds = if matches!(op, Infix::Temporal(_)) { self.bounds()? } else { None };
+            stack.push(Pending::Infix { op, bounds, span, left: node });
+            return Ok(());
+        }
+        let next_is_minus = op == Infix::Minus;
+        match stack.last_mut() {
+            Some(Pending::Flat { op: same, items, height, minus, .. }) if same.level() == op.level() => {
+                items.push((*minus, *node.expr));
+                *height = node.height.max(*height);
+                *minus = next_is_minus;
+            }
+            _ => stack.push(Pending::Flat {
+                op,
+                items: vec![(false, *node.expr)],
+                start: node.outer,
+                height: node.height,
+                minus: next_is_minus,
+            }),
+        }
+        Ok(())
+    }
+
+    /// Gives `node` to the operators on the stack that bind it more tightly than `next` does; to
+    /// all of them where nothing follows.
+    #[inline(never)]
+    fn reduce(&mut self, stack: &mut Vec<Pending>, mut node: Node, next: Option<Infix>) -> Parse<Node> {
+        while let Some(top) = stack.last() {
+            if let Some(next) = next {
+                let waits_on_equal = next.is_right_associative() || next.is_flat();
+                if top.level() < next.level() || top.level() == next.level() && waits_on_equal {
+                    break;
+                }
+            }
+            let Some(top) = stack.pop() else { break };
+            node = self.apply(top, node)?;
+        }
+        Ok(node)
+    }
+
+    #[inline(never)]
+    fn apply(&mut self, pending: Pending, right: Node) -> Parse<Node> {
+        match pending {
+            Pending::Prefix { op, bounds, span } => {
+                let (interval, bound_height) = unzip(bounds);
+                let height = right.height.max(bound_height);
+                let operand = right.expr;
+                let kind = match op {
+                    Prefix::Not => ExprKind::Not(operand),
+                    Prefix::Neg => ExprKind::Neg(operand),
+                    Prefix::Temporal(op) => ExprKind::Unary(op, interval, operand),
+                };
+                self.inner(kind, span.to(right.outer), height, span)
+            }
+            Pending::Infix { op, bounds, span, left } => {
+                let (interval, bound_height) = unzip(bounds);
+                let height = left.height.max(right.height).max(bound_height);
+                let whole = left.outer.to(right.outer);
+                let (left, right) = (left.expr, right.expr);
+                let kind = match op {
+                    Infix::Iff => ExprKind::Iff(left, right),
+                    Infix::Implies => ExprKind::Implies(left, right),
+                    Infix::Temporal(op) => ExprKind::Binary(op, interval, left, right),
+                    Infix::Compare(op) => ExprKind::Compare(op, left, right),
+                    Infix::Arith(op) => ExprKind::Arith(op, left, right),
+                    // `shift` makes none of these: they are flat, or have a set to their right.
+                    Infix::Or | Infix::And | Infix::Plus | Infix::Minus | Infix::In => return Err(Abort),
+                };
+                self.inner(kind, whole, height, span)
+            }
+            Pending::Flat { op, mut items, start, height, minus } => {
+                let whole = start.to(right.outer);
+                let height = height.max(right.height);
+                items.push((minus, *right.expr));
+                let unsigned = |items: Vec<(bool, Expr)>| items.into_iter().map(|(_, item)| item).collect();
+                let kind = match op {
+                    Infix::And => ExprKind::And(unsigned(items)),
+                    Infix::Or => ExprKind::Or(unsigned(items)),
+                    _ => ExprKind::Sum(items),
+                };
+                self.inner(kind, whole, height, start)
+            }
+        }
+    }
+
+    /// A node above others, the highest of which has `height`; `mark` is shown if that is too much.
+    #[inline(never)]
+    pub(super) fn inner(&mut self, kind: ExprKind, span: Span, height: u32, mark: Span) -> Parse<Node> {
+        if height >= MAX_NESTING {
+            return self.too_deep(mark);
+        }
+        Ok(Node { expr: Box::new(Expr { kind, span }), outer: span, height: height + 1 })
+    }
+
+    /// The operator at the present token, if it binds at least as tightly as `least`.
+    #[inline(never)]
+    fn infix(&mut self, least: u8) -> Option<(Infix, Span)> {
+        let token = self.token();
+        let slip = Infix::of_slip(token.tok, token.text);
+        let op = Infix::of(token.tok).or(slip.map(|(op, _)| op)).filter(|op| op.level() >= least)?;
+        self.bump();
+        if let Some((_, right)) = slip {
+            let message = format!("`{}` is not an operator here", token.text);
+            let help = match token.tok {
+                Tok::FatArrow => "write `->` for implication, `>=` for \"at least\"".to_owned(),
+                _ => format!("write `{right}`"),
+            };
+            self.wrong(token.span, message, help);
+        }
+        Some((op, token.span))
+    }
+
+    /// Puts the prefix operators at this place on the stack.
+    #[inline(never)]
+    fn prefixes(&mut self, stack: &mut Vec<Pending>) -> Parse<()> {
+        while let Some((op, span)) = self.prefix() {
+            if stack.len() >= MAX_NESTING as usize {
+                return self.too_deep(span);
+            }
+            if stack.last().is_some_and(|top| top.level() > op.level()) {
+                let text = self.text.get(span.range()).unwrap_or("");
+                self.report(
+                    Diagnostic::error("needs-parentheses", span, format!("`{text}` needs parentheses here"))
+                        .with_help(format!(
+                            "comparisons and arithmetic bind more tightly: write `a == ({text} b)`"
+                        )),
+                );
+            }
+            let bounds = match op {
+                Prefix::Temporal(_) => self.bounds()?,
+                Prefix::Not | Prefix::Neg => None,
+            };
+            if let (Prefix::Temporal(temporal), Some((interval, _))) = (op, &bounds) {
+                self.check_interval_allowed(temporal, interval.span);
+            }
+            stack.push(Pending::Prefix { op, bounds, span });
+        }
+        Ok(())
+    }
+
+    #[inline(never)]
+    fn check_interval_allowed(&mut self, op: UnaryOp, span: Span) {
+        let name = match op {
+            UnaryOp::Next => "X",
+            UnaryOp::WeakNext => "N",
+            UnaryOp::Finally | UnaryOp::Globally => return,
+        };
+        let error = Diagnostic::error("interval-not-allowed", span, format!("`{name}` takes no interval"));
+        self.report(
+            error.with_help(format!("`{name}` always speaks of the next step; repeat it for later ones")),
+        );
+    }
+
+    #[inline(never)]
+    fn prefix(&mut self) -> Option<(Prefix, Span)> {
+        let token = self.token();
+        if let Some(op) = Prefix::of(token.tok) {
+            self.bump();
+            return Some((op, token.span));
+        }
+        let (op, right) = match token.tok {
+            Tok::LBracket if self.peek_at(1) == Tok::RBracket => {
+                let span = self.bump().span.to(self.bump().span);
+                self.wrong(span, "`[]` is not an operator here", "write `G`");
+                return Some((Prefix::Temporal(UnaryOp::Globally), span));
+            }
+            Tok::Ident if self.operand_follows() => Prefix::of_word(token.text)?,
+            tok => Prefix::of_slip(tok)?,
+        };
+        self.bump();
+        self.wrong(
+            token.span,
+            format!("`{}` is not an operator here", token.text),
+            format!("write `{right}`"),
+        );
+        Some((op, token.span))
+    }
+
+    /// Whether the word at this place cannot be a name, since an operand follows it.
+    fn operand_follows(&self) -> bool {
+        match self.peek_at(1) {
+            Tok::Ident => Infix::of_slip(Tok::Ident, self.token_at(1).text).is_none(),
+            Tok::Number | Tok::Bang | Tok::True | Tok::False | Tok::Tilde => true,
+            Tok::Next | Tok::WeakNext | Tok::Finally | Tok::Globally => true,
+            // `not(p)` may be the use of a definition, `not (x == 1)` may not.
+            Tok::LParen => {
+                self.peek_at(2) != Tok::Ident || !matches!(self.peek_at(3), Tok::RParen | Tok::Comma)
+            }
+            _ => false,
+        }
+    }
+}
+
+fn unzip(bounds: Bounds) -> (Option<Interval>, u32) {
+    bounds.map_or((None, 0), |(interval, height)| (Some(interval), height))
+}

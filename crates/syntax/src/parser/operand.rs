@@ -1,0 +1,216 @@
+//! Operands: names, brackets, conditionals; and what else of an operator has brackets, intervals
+//! and sets.
+
+use super::expr::{Bounds, Node};
+use super::operator::{Infix, Prefix, level};
+use super::{Abort, Parse, Parser, ident};
+use crate::ast::{Expr, ExprKind, Interval, Set};
+use crate::diagnostic::Diagnostic;
+use crate::span::Span;
+use crate::token::Tok;
+
+impl Parser<'_> {
+    /// `[a,b]` or `[b]`, where one stands.
+    #[inline(never)]
+    pub(super) fn bounds(&mut self) -> Parse<Bounds> {
+        if self.peek() != Tok::LBracket || self.peek_at(1) == Tok::RBracket {
+            return Ok(None);
+        }
+        let open = self.bump();
+        let first = self.node(level::SUM)?;
+        let mut height = first.height;
+        let mut interval = Interval { lo: None, hi: first.expr, span: open.span };
+        if let Some(dots) = self.eat(Tok::DotDot) {
+            self.wrong(dots.span, "an interval has a comma between its ends", "write `[a,b]`");
+        } else if self.eat(Tok::Comma).is_none() {
+            self.expect(Tok::RBracket, "`,` or `]`")?;
+            interval.span = self.since(open.span);
+            return Ok(Some((interval, height)));
+        }
+        let second = self.node(level::SUM)?;
+        height = height.max(second.height);
+        interval.lo = Some(std::mem::replace(&mut interval.hi, second.expr));
+        self.expect(Tok::RBracket, "`]`")?;
+        interval.span = self.since(open.span);
+        Ok(Some((interval, height)))
+    }
+
+    /// The set to the right of `in`, and `left` in it.
+    #[inline(never)]
+    pub(super) fn membership(&mut self, left: Node) -> Parse<Node> {
+        let start = self.token().span;
+        let (set, height) = self.set_and_height()?;
+        let whole = self.since(left.outer);
+        self.inner(ExprKind::In(left.expr, set), whole, left.height.max(height), start)
+    }
+
+    /// `{E, ...}`, `LO..HI` or `enabled[p]`.
+    pub(super) fn set(&mut self) -> Parse<Set> {
+        Ok(self.set_and_height()?.0)
+    }
+
+    #[inline(never)]
+    fn set_and_height(&mut self) -> Parse<(Set, u32)> {
+        let start = self.token();
+        if self.eat(Tok::LBrace).is_some() {
+            let (items, height) = self.list(Tok::RBrace, "`,` or `}`")?;
+            return Ok((Set::List(items, self.since(start.span)), height));
+        }
+        if self.at_word("enabled") && self.peek_at(1) == Tok::LBracket {
+            self.bump();
+            self.bump();
+            let path = self.name("a path variable")?;
+            self.expect(Tok::RBracket, "`]`")?;
+            return Ok((Set::Enabled(path, self.since(start.span)), 1));
+        }
+        let lo = self.node(level::SUM)?;
+        if self.peek() != Tok::DotDot {
+            let help = "a set is written `{a, b}`, `0..2` or `enabled[p]`";
+            return self.fail_with("`..`", Some(help.to_owned()));
+        }
+        self.bump();
+        let hi = self.node(level::SUM)?;
+        let height = lo.height.max(hi.height);
+        Ok((Set::Range(lo.expr, hi.expr), height))
+    }
+
+    /// One or more expressions with commas between them, up to `close`; and the greatest height.
+    #[inline(never)]
+    fn list(&mut self, close: Tok, expected: &str) -> Parse<(Vec<Expr>, u32)> {
+        let mut items = Vec::new();
+        let mut height = 0;
+        loop {
+            let item = self.node(level::LOWEST)?;
+            height = height.max(item.height);
+            items.push(*item.expr);
+            if self.eat(Tok::Comma).is_none() {
+                break;
+            }
+        }
+        self.expect(close, expected)?;
+        Ok((items, height))
+    }
+
+    pub(super) fn operand(&mut self, least: u8) -> Parse<Node> {
+        let token = self.token();
+        let kind = match token.tok {
+            Tok::Number => ExprKind::Number(token.text.to_owned()),
+            Tok::True => ExprKind::Bool(true),
+            Tok::False => ExprKind::Bool(false),
+            Tok::Ident => return self.named(),
+            Tok::LParen => return self.parenthesized(),
+            Tok::If => return self.conditional(least),
+            _ => return self.no_operand(),
+        };
+        self.bump();
+        Ok(Node::leaf(kind, token.span))
+    }
+
+    /// `NAME`, `NAME[p]` or `NAME(p, ...)`.
+    #[inline(never)]
+    fn named(&mut self) -> Parse<Node> {
+        let token = self.bump();
+        let kind = match self.peek() {
+            Tok::LBracket => {
+                self.bump();
+                let paths = self.names("a path variable")?;
+                self.expect(Tok::RBracket, "`]` after the path variable")?;
+                ExprKind::At(ident(token), paths)
+            }
+            Tok::LParen => ExprKind::Call(ident(token), self.parenthesized_names("a path variable")?),
+            _ => {
+                self.check_glued(token.text)?;
+                ExprKind::Name(token.text.to_owned())
+            }
+        };
+        Ok(Node::leaf(kind, self.since(token.span)))
+    }
+
+    /// Explains `F_T goal[p]` and `GF goal[p]`, which the lexer reads as names.
+    fn check_glued(&mut self, text: &str) -> Parse<()> {
+        let operand = matches!(self.peek(), Tok::Ident | Tok::Bang | Tok::Number)
+            || Prefix::of(self.peek()).is_some_and(|op| op != Prefix::Neg);
+        let token = self.token();
+        if !operand || token.first_on_line || Infix::of_slip(token.tok, token.text).is_some() {
+            return Ok(());
+        }
+        let span = self.tokens[self.at - 1].span;
+        let help = match text.split_once('_') {
+            Some((op @ ("F" | "G" | "U" | "R" | "W"), bound)) if !bound.is_empty() => {
+                format!("an operator and its bound are written `{op}[0,{bound}]`")
+            }
+            None if text.chars().all(|c| "XNFG".contains(c)) => {
+                let apart: Vec<String> = text.chars().map(String::from).collect();
+                format!("put blanks between operators: `{}`", apart.join(" "))
+            }
+            _ => return Ok(()),
+        };
+        self.wrong(span, format!("`{text}` is read as one name"), help);
+        Err(Abort)
+    }
+
+    /// `(E)` or `(E, E, ...)`.
+    #[inline(never)]
+    fn parenthesized(&mut self) -> Parse<Node> {
+        let open = self.bump();
+        let mut node = self.node(level::LOWEST)?;
+        if self.eat(Tok::RParen).is_some() {
+            node.outer = self.since(open.span);
+            return Ok(node);
+        }
+        if self.eat(Tok::Comma).is_none() {
+            return self.unclosed_parenthesis(open.span);
+        }
+        let (rest, height) = self.list(Tok::RParen, "`,` or `)`")?;
+        let mut items = vec![*node.expr];
+        items.extend(rest);
+        let whole = self.since(open.span);
+        self.inner(ExprKind::Tuple(items), whole, node.height.max(height), open.span)
+    }
+
+    #[inline(never)]
+    fn unclosed_parenthesis<T>(&mut self, open: Span) -> Parse<T> {
+        let token = self.token();
+        if token.tok != Tok::Bad {
+            let message = format!("expected an operator or `)`, found {}", token.describe());
+            let error = Diagnostic::error("syntax", token.span, message).with_label("not expected here");
+            self.report(error.with_related(open, "opened here"));
+        }
+        Err(Abort)
+    }
+
+    /// `if C then A else B`; `B` reaches as far to the right as the expression around may.
+    #[inline(never)]
+    fn conditional(&mut self, least: u8) -> Parse<Node> {
+        let start = self.bump();
+        let condition = self.node(level::LOWEST)?;
+        self.expect(Tok::Then, "`then`")?;
+        let yes = self.node(level::LOWEST)?;
+        if self.peek() != Tok::Else {
+            return self.fail_with("`else`", Some("an `if` always has an `else`".to_owned()));
+        }
+        self.bump();
+        let no = self.node(least)?;
+        let height = condition.height.max(yes.height).max(no.height);
+        let kind = ExprKind::If(condition.expr, yes.expr, no.expr);
+        self.inner(kind, self.since(start.span), height, start.span)
+    }
+
+    #[inline(never)]
+    fn no_operand<T>(&mut self) -> Parse<T> {
+        let token = self.token();
+        let help = match token.tok {
+            Tok::Exists | Tok::Forall => {
+                "quantifiers stand in front of the whole formula: `exists p. forall q. ...`"
+            }
+            Tok::Until | Tok::Release | Tok::WeakUntil => {
+                "this operator stands between two formulas: `a U b`"
+            }
+            Tok::Ident | Tok::Number => return self.fail("an expression"),
+            Tok::Str => "strings stand only in `grid` and `graph`",
+            Tok::Assign if self.behind().start == token.span.start => "equality is written `==`",
+            _ => return self.fail("an expression"),
+        };
+        self.fail_with("an expression", Some(help.to_owned()))
+    }
+}

@@ -1,0 +1,305 @@
+//! Systems: their maps, variables, actions and clauses.
+
+use super::recover::{Block, ITEMS};
+use super::{Abort, Parse, Parser, did_you_mean};
+use crate::ast::{
+    Clause, Expr, Ident, StateDecl, System, SystemItem, SystemKind, Text, Type, Update, UpdateValue,
+};
+use crate::diagnostic::Diagnostic;
+use crate::span::Span;
+use crate::token::Tok;
+
+impl Parser<'_> {
+    pub(super) fn system(&mut self) -> Parse<System> {
+        let start = self.bump().span;
+        let name = self.any_word("the name of the system")?;
+        let mut items = Vec::new();
+        if self.peek() == Tok::LBrace {
+            let span = self.since(start);
+            self.items(&mut items)?;
+            return Ok(System { name, kind: SystemKind::Plain, items, span });
+        }
+        if self.eat(Tok::Assign).is_none() {
+            return self.fail("`{` or `=`");
+        }
+        let kind = self.system_kind(&mut items)?;
+        let span = self.since(start);
+        if self.peek() == Tok::LBrace {
+            self.items(&mut items)?;
+        } else if matches!(kind, SystemKind::GridRows(_)) {
+            // After a `}`, the `;` is a matter of taste.
+            let _ = self.eat(Tok::Semi);
+        } else {
+            self.semicolon(Block::File, "the file name", "`{` or `;`")?;
+        }
+        Ok(System { name, kind, items, span })
+    }
+
+    /// `grid("file")`, `grid { rows items }` or `graph("file")`.
+    fn system_kind(&mut self, items: &mut Vec<SystemItem>) -> Parse<SystemKind> {
+        let token = self.token();
+        let word = match token.text {
+            "grid" | "graph" => token.text,
+            text if token.tok == Tok::Ident => {
+                let help = did_you_mean(text, &["grid", "graph"]);
+                return self.fail_with("`grid` or `graph`", help);
+            }
+            _ => return self.fail("`grid` or `graph`"),
+        };
+        self.bump();
+        if word == "grid" && self.peek() == Tok::LBrace {
+            return Ok(SystemKind::GridRows(self.rows(items)?));
+        }
+        self.expect(Tok::LParen, if word == "grid" { "`(` or `{`" } else { "`(`" })?;
+        let file = self.string("a file name in quotes")?;
+        self.expect(Tok::RParen, "`)`")?;
+        Ok(if word == "grid" { SystemKind::GridFile(file) } else { SystemKind::Graph(file) })
+    }
+
+    /// `{ "..." "..." items }`, the rows from the top.
+    fn rows(&mut self, items: &mut Vec<SystemItem>) -> Parse<Vec<Text>> {
+        let open = self.bump();
+        let mut rows = Vec::new();
+        while self.peek() == Tok::Str {
+            rows.push(self.string("a row of the map")?);
+            if let Some(comma) = self.eat(Tok::Comma) {
+                let error =
+                    Diagnostic::error("syntax", comma.span, "no comma stands between the rows of a map");
+                self.report(error.with_help("remove the `,`"));
+            }
+        }
+        if rows.is_empty() {
+            return self.fail("a row of the map in quotes");
+        }
+        self.item_list(items);
+        self.close_block(open, "another row, an item or `}`");
+        Ok(rows)
+    }
+
+    fn items(&mut self, items: &mut Vec<SystemItem>) -> Parse<()> {
+        let open = self.expect(Tok::LBrace, "`{`")?;
+        self.item_list(items);
+        self.close_block(open, "an item or `}`");
+        Ok(())
+    }
+
+    fn item_list(&mut self, items: &mut Vec<SystemItem>) {
+        while !self.block_ends(Block::System) {
+            items.extend(self.member(Block::System, Self::system_item).flatten());
+        }
+    }
+
+    fn system_item(&mut self) -> Parse<Option<SystemItem>> {
+        let start = self.token();
+        if matches!(start.text, "define" | "const" | "objective" | "template") && self.at_member(Block::File)
+        {
+            self.misplaced()?;
+        }
+        let Some(word) = self.keyword(ITEMS) else {
+            let help = match start.tok {
+                Tok::Semi if self.at > 0 => Some("no `;` follows a `}`".to_owned()),
+                Tok::Str => Some("the rows of a map stand before its items".to_owned()),
+                Tok::Ident => did_you_mean(start.text, ITEMS),
+                _ => None,
+            };
+            let expected = "an item of the system (`state`, `action`, `on`, `init`, `label`, ...)";
+            return self.fail_with(expected, help);
+        };
+        self.bump();
+        let item = match word {
+            "on" => return self.clause(start.span).map(|clause| Some(SystemItem::On(clause))),
+            "state" => SystemItem::State(self.state_decls()?),
+            "action" => SystemItem::Action(self.names("the name of an action")?),
+            "moves" => SystemItem::Moves(self.names("a move")?),
+            "obstacle" => SystemItem::Obstacle(self.name("`undefined`, `stay` or `crash`")?),
+            "edge" => SystemItem::Edge(self.name("`undefined`, `stay` or `crash`")?),
+            "init" => SystemItem::Init(self.expr()?),
+            "absorb" => SystemItem::Absorb(self.expr()?),
+            "observe" => SystemItem::Observe(self.observed()?),
+            "label" => {
+                let name = self.name("the name of a label")?;
+                self.equals()?;
+                SystemItem::Label(name, self.expr()?)
+            }
+            _ => {
+                let (letter, label) = self.legend()?;
+                SystemItem::Legend { letter, label, span: self.since(start.span) }
+            }
+        };
+        let expected = match item {
+            SystemItem::Obstacle(_) | SystemItem::Edge(_) | SystemItem::Legend { .. } => "`;`",
+            SystemItem::Action(_) | SystemItem::Moves(_) | SystemItem::State(_) => "`,` or `;`",
+            _ => "an operator or `;`",
+        };
+        self.semicolon(Block::System, &format!("`{word}`"), expected)?;
+        Ok(Some(item))
+    }
+
+    fn observed(&mut self) -> Parse<Vec<Expr>> {
+        let mut observed = vec![self.expr()?];
+        while self.eat(Tok::Comma).is_some() {
+            observed.push(self.expr()?);
+        }
+        Ok(observed)
+    }
+
+    fn legend(&mut self) -> Parse<(Text, Option<Ident>)> {
+        let token = self.token();
+        if token.tok != Tok::Char {
+            let help = "write `legend 'W' = water;`, or `legend 'W' = #;` for an obstacle";
+            return self.fail_with("a letter in quotes", Some(help.to_owned()));
+        }
+        self.bump();
+        let letter = Text { text: token.text.trim_matches('\'').to_owned(), span: token.span };
+        self.equals()?;
+        if self.eat(Tok::Hash).is_some() {
+            return Ok((letter, None));
+        }
+        Ok((letter, Some(self.name("a label or `#`")?)))
+    }
+
+    fn state_decls(&mut self) -> Parse<Vec<StateDecl>> {
+        let mut decls = Vec::new();
+        loop {
+            let name = self.name("the name of a state variable")?;
+            self.expect(Tok::Colon, "`:` and a type")?;
+            let start = self.token().span;
+            let ty = self.state_type()?;
+            decls.push(StateDecl { name, ty, ty_span: self.since(start) });
+            if self.eat(Tok::Comma).is_none() {
+                return Ok(decls);
+            }
+        }
+    }
+
+    fn state_type(&mut self) -> Parse<Type> {
+        let token = self.token();
+        let alone = matches!(self.peek_at(1), Tok::Comma | Tok::Semi | Tok::RBrace | Tok::Eof);
+        let known = match token.text {
+            "bool" => Some(Type::Bool),
+            "int" => Some(Type::Int),
+            "real" => Some(Type::Real),
+            _ => None,
+        };
+        if let Some(known) = known {
+            self.bump();
+            return Ok(known);
+        }
+        if token.tok == Tok::Ident && alone {
+            let meant = match token.text.to_ascii_lowercase().as_str() {
+                "boolean" => Some("did you mean `bool`?".to_owned()),
+                "integer" | "nat" => Some("did you mean `int`?".to_owned()),
+                "float" | "double" => Some("did you mean `real`?".to_owned()),
+                _ => did_you_mean(token.text, &["bool", "int", "real"]),
+            };
+            let help =
+                meant.unwrap_or_else(|| "types are `bool`, `LO..HI`, `{a, b}`, `int` and `real`".to_owned());
+            let error =
+                Diagnostic::error("unknown-type", token.span, format!("unknown type `{}`", token.text));
+            self.report(error.with_help(help));
+            return Err(Abort);
+        }
+        if self.eat(Tok::LBrace).is_some() {
+            let values = self.names("the name of a value")?;
+            self.expect(Tok::RBrace, "`,` or `}`")?;
+            return Ok(Type::Enum(values));
+        }
+        if token.tok == Tok::LBracket {
+            return self.fail_with("a type", Some("a range of integers is written `0..2`".to_owned()));
+        }
+        let lo = self.arithmetic()?;
+        self.expect(Tok::DotDot, "`..` and the upper end of the range")?;
+        Ok(Type::Range(lo, self.arithmetic()?))
+    }
+
+    /// `on A | B when GUARD { UPDATES }`, behind the `on`.
+    fn clause(&mut self, start: Span) -> Parse<Clause> {
+        let actions = if self.eat(Tok::Star).is_some() { None } else { Some(self.clause_actions()?) };
+        let guard = self.guard()?;
+        let span = self.since(start);
+        let expected = if guard.is_some() { "an operator or `{`" } else { "`|`, `when` or `{`" };
+        let open = self.expect(Tok::LBrace, expected)?;
+        let mut updates = Vec::new();
+        while !self.block_ends(Block::Updates) {
+            updates.extend(self.member(Block::Updates, Self::update));
+        }
+        self.close_block(open, "an update or `}`");
+        Ok(Clause { actions, guard, updates, span })
+    }
+
+    fn clause_actions(&mut self) -> Parse<Vec<Ident>> {
+        let mut actions = vec![self.name("the name of an action or `*`")?];
+        loop {
+            let token = self.token();
+            match token.tok {
+                Tok::Pipe | Tok::PipePipe => {
+                    self.bump();
+                }
+                Tok::Comma => {
+                    self.bump();
+                    self.wrong(
+                        token.span,
+                        "actions of a clause are separated by `|`",
+                        "write `on a | b { ... }`",
+                    );
+                }
+                _ => return Ok(actions),
+            }
+            actions.push(self.name("the name of an action")?);
+        }
+    }
+
+    fn guard(&mut self) -> Parse<Option<Expr>> {
+        let token = self.token();
+        let meant =
+            token.tok == Tok::If || token.tok == Tok::Ident && did_you_mean(token.text, &["when"]).is_some();
+        if meant {
+            self.misspelt(token, "when");
+            self.bump();
+        } else if self.eat_word("when").is_none() {
+            return Ok(None);
+        }
+        self.expr().map(Some)
+    }
+
+    /// `v' = E;`, `v' in {E, ...};` or `v' in LO..HI;`
+    fn update(&mut self) -> Parse<Update> {
+        let mut var = self.name("an update such as `x' = x + 1;`")?;
+        if let Some(prime) = self.eat(Tok::Prime) {
+            var.span = var.span.to(prime.span);
+        } else if matches!(self.peek(), Tok::Assign | Tok::ColonEq | Tok::In) {
+            let message = format!("expected `'` after `{}`", var.name);
+            let help = format!("the next value of `{0}` is written `{0}'`", var.name);
+            self.report(Diagnostic::error("missing-prime", var.span, message).with_help(help));
+        } else {
+            return self.fail("`'` after the variable");
+        }
+        let value = self.update_value()?;
+        self.semicolon(Block::Updates, "the update", "an operator or `;`")?;
+        Ok(Update { var, value })
+    }
+
+    fn update_value(&mut self) -> Parse<UpdateValue> {
+        if self.eat(Tok::In).is_some() {
+            return Ok(UpdateValue::Choose(self.set()?));
+        }
+        let token = self.token();
+        if !matches!(token.tok, Tok::Assign | Tok::EqEq | Tok::ColonEq) {
+            return self.fail("`=` or `in`");
+        }
+        self.bump();
+        if token.tok != Tok::Assign {
+            self.wrong(token.span, format!("`{}` is not an update", token.text), "write `=`");
+        }
+        if self.peek() == Tok::LBrace {
+            self.wrong(token.span, "a variable is given one value by `=`", "write `in` to choose from a set");
+            return Ok(UpdateValue::Choose(self.set()?));
+        }
+        let value = self.expr()?;
+        if self.peek() == Tok::DotDot {
+            let help = "write `in` to choose from a range: `x' in 0..2;`";
+            return self.fail_with("an operator or `;`", Some(help.to_owned()));
+        }
+        Ok(UpdateValue::Assign(value))
+    }
+}

@@ -1,0 +1,216 @@
+//! Diagnostics as text for people (through miette) and as data for programs.
+
+use std::fmt;
+
+use miette::{Diagnostic as Report, GraphicalReportHandler, GraphicalTheme, LabeledSpan, SourceCode};
+use serde::Serialize;
+
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::excerpt::Excerpt;
+use crate::span::{SourceMap, Span};
+
+/// The diagnostics as text, each with its place, the line marked, and advice.
+///
+/// With `color`, for a terminal: colors and box-drawing characters. Without, for logs: what frames
+/// the message is ASCII. The text depends on nothing but the arguments.
+#[must_use]
+pub fn render(sources: &SourceMap, diagnostics: &[Diagnostic], color: bool, width: usize) -> String {
+    let theme = if color { GraphicalTheme::unicode() } else { GraphicalTheme::none() };
+    let handler = GraphicalReportHandler::new_themed(theme).with_links(false).with_width(width.max(20));
+    let mut out = String::new();
+    for diagnostic in diagnostics {
+        let shown = Shown::new(sources, diagnostic, width);
+        if !out.is_empty() {
+            out.push('\n');
+        }
+        // Writing to a string fails only if an excerpt cannot be read; then the message must do.
+        let before = out.len();
+        if handler.render_report(&mut out, &shown).is_err() {
+            out.truncate(before);
+            out.push_str(&diagnostic.message);
+            out.push('\n');
+        }
+    }
+    let lines: Vec<&str> = out.lines().map(str::trim_end).collect();
+    lines.join("\n") + if lines.is_empty() { "" } else { "\n" }
+}
+
+/// A diagnostic in the shape that miette renders.
+#[derive(Debug)]
+struct Shown {
+    message: String,
+    code: Option<&'static str>,
+    severity: miette::Severity,
+    help: Option<String>,
+    excerpt: Option<Excerpt>,
+    labels: Vec<LabeledSpan>,
+    /// Places in other sources.
+    elsewhere: Vec<Shown>,
+}
+
+impl Shown {
+    fn new(sources: &SourceMap, diagnostic: &Diagnostic, width: usize) -> Shown {
+        let severity = match diagnostic.severity {
+            Severity::Error => miette::Severity::Error,
+            Severity::Warning => miette::Severity::Warning,
+        };
+        let mut places: Vec<(Span, &str)> = Vec::new();
+        let mut elsewhere = Vec::new();
+        places.extend(diagnostic.span.map(|span| (span, diagnostic.label.as_str())));
+        for (span, words) in &diagnostic.related {
+            if diagnostic.span.is_some_and(|main| main.source == span.source) {
+                places.push((*span, words));
+            } else {
+                elsewhere.push(Shown::place(sources, *span, words, width));
+            }
+        }
+        let mut shown = Shown {
+            message: diagnostic.message.clone(),
+            code: Some(diagnostic.code),
+            severity,
+            help: diagnostic.help.clone(),
+            excerpt: None,
+            labels: Vec::new(),
+            elsewhere,
+        };
+        shown.mark(sources, &places, width);
+        shown
+    }
+
+    fn place(sources: &SourceMap, span: Span, words: &str, width: usize) -> Shown {
+        let mut shown = Shown {
+            message: words.to_owned(),
+            code: None,
+            severity: miette::Severity::Advice,
+            help: None,
+            excerpt: None,
+            labels: Vec::new(),
+            elsewhere: Vec::new(),
+        };
+        shown.mark(sources, &[(span, "")], width);
+        shown
+    }
+
+    /// Marks places of one source; the first is the one the message is about.
+    fn mark(&mut self, sources: &SourceMap, places: &[(Span, &str)], width: usize) {
+        let Some((main, _)) = places.first() else { return };
+        let spans: Vec<Span> = places.iter().map(|(span, _)| *span).collect();
+        let excerpt = Excerpt::new(sources.get(main.source), &spans, width);
+        for (nth, ((_, words), mark)) in places.iter().zip(&excerpt.marks).enumerate() {
+            let words = (!words.is_empty()).then(|| (*words).to_owned());
+            let span = (mark.offset, mark.length);
+            self.labels.push(match nth {
+                0 => LabeledSpan::new_primary_with_span(words, span),
+                _ => LabeledSpan::new_with_span(words, span),
+            });
+        }
+        self.excerpt = Some(excerpt);
+    }
+}
+
+impl fmt::Display for Shown {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Shown {}
+
+impl Report for Shown {
+    fn code<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        let severity = if self.severity == miette::Severity::Warning { "warning" } else { "error" };
+        self.code.map(|code| Box::new(format!("{severity}[{code}]")) as _)
+    }
+
+    fn severity(&self) -> Option<miette::Severity> {
+        Some(self.severity)
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        self.help.as_ref().map(|help| Box::new(help) as _)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.excerpt.as_ref().map(|excerpt| excerpt as _)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        (!self.labels.is_empty()).then(|| Box::new(self.labels.iter().cloned()) as _)
+    }
+
+    fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn Report> + 'a>> {
+        (!self.elsewhere.is_empty())
+            .then(|| Box::new(self.elsewhere.iter().map(|shown| shown as &dyn Report)) as _)
+    }
+}
+
+/// A place for programs: lines and columns from 1, columns in characters, the end exclusive.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct JsonPlace {
+    /// The name of the source.
+    pub file: String,
+    /// Line of the first character.
+    pub line: usize,
+    /// Column of the first character.
+    pub column: usize,
+    /// Line of the place behind the last character.
+    pub end_line: usize,
+    /// Column of the place behind the last character.
+    pub end_column: usize,
+}
+
+/// Another place that matters.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct JsonRelated {
+    /// A few words.
+    pub message: String,
+    /// The place.
+    #[serde(flatten)]
+    pub place: JsonPlace,
+}
+
+/// A diagnostic for programs.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct JsonDiagnostic {
+    /// `error` or `warning`.
+    pub severity: &'static str,
+    /// See [`Diagnostic::code`].
+    pub code: &'static str,
+    /// One sentence.
+    pub message: String,
+    /// The place; its members are absent where there is none.
+    #[serde(flatten)]
+    pub place: Option<JsonPlace>,
+    /// Words beside the place, or null.
+    pub label: Option<String>,
+    /// Advice, or null.
+    pub help: Option<String>,
+    /// Other places.
+    pub related: Vec<JsonRelated>,
+}
+
+/// The diagnostic as data.
+#[must_use]
+pub fn to_json(sources: &SourceMap, diagnostic: &Diagnostic) -> JsonDiagnostic {
+    let place = |span: Span| {
+        let (line, column) = sources.position(span);
+        let (end_line, end_column) = sources.position(Span { start: span.end.max(span.start), ..span });
+        JsonPlace { file: sources.get(span.source).name.clone(), line, column, end_line, end_column }
+    };
+    let related = diagnostic.related.iter();
+    JsonDiagnostic {
+        severity: match diagnostic.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        },
+        code: diagnostic.code,
+        message: diagnostic.message.clone(),
+        place: diagnostic.span.map(place),
+        label: (!diagnostic.label.is_empty()).then(|| diagnostic.label.clone()),
+        help: diagnostic.help.clone(),
+        related: related
+            .map(|(span, words)| JsonRelated { message: words.clone(), place: place(*span) })
+            .collect(),
+    }
+}

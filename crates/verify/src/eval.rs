@@ -1,0 +1,72 @@
+//! The value of an expression, by the definition of each of its forms.
+
+use hyperplan_problem::{Comparison, Expr, Value};
+
+/// The value of `expr`, or `None` where it depends on a leaf that has none. Connectives are Kleene's: a false
+/// conjunct decides whatever the others are.
+pub(crate) fn eval<L>(expr: &Expr<L>, leaf: &impl Fn(&L) -> Option<Value>) -> Option<Value> {
+    match expr {
+        Expr::Const(value) => Some(*value),
+        Expr::Leaf(l) => leaf(l),
+        Expr::Not(a) => truth(a, leaf).map(|a| Value::Bool(!a)),
+        Expr::And(es) => connective(es, false, leaf),
+        Expr::Or(es) => connective(es, true, leaf),
+        Expr::Iff(a, b) => Some(Value::Bool(truth(a, leaf)? == truth(b, leaf)?)),
+        Expr::Compare(op, a, b) => compare(*op, eval(a, leaf)?, eval(b, leaf)?).map(Value::Bool),
+        Expr::Add(es) => {
+            let sum = es.iter().try_fold(0_i64, |sum, e| sum.checked_add(int(e, leaf)?))?;
+            Some(Value::Int(sum))
+        }
+        Expr::Mul(c, a) => c.checked_mul(int(a, leaf)?).map(Value::Int),
+        Expr::Div(a, c) => int(a, leaf)?.checked_div_euclid(*c).map(Value::Int),
+        Expr::Mod(a, c) => int(a, leaf)?.checked_rem_euclid(*c).map(Value::Int),
+        Expr::If(c, a, b) => match truth(c, leaf) {
+            Some(true) => eval(a, leaf),
+            Some(false) => eval(b, leaf),
+            None => eval(a, leaf).filter(|v| eval(b, leaf) == Some(*v)),
+        },
+        Expr::Member(es, set) => {
+            let tuple = es.iter().map(|e| int(e, leaf)).collect::<Option<Vec<i64>>>()?;
+            Some(Value::Bool(set.contains(&tuple)))
+        }
+    }
+}
+
+/// The value of a Boolean expression.
+pub(crate) fn truth<L>(expr: &Expr<L>, leaf: &impl Fn(&L) -> Option<Value>) -> Option<bool> {
+    match eval(expr, leaf)? {
+        Value::Bool(b) => Some(b),
+        Value::Int(_) | Value::Enum(_) => None,
+    }
+}
+
+fn int<L>(expr: &Expr<L>, leaf: &impl Fn(&L) -> Option<Value>) -> Option<i64> {
+    match eval(expr, leaf)? {
+        Value::Int(n) => Some(n),
+        Value::Bool(_) | Value::Enum(_) => None,
+    }
+}
+
+/// `decisive` is the operand value that decides: false for a conjunction, true for a disjunction.
+fn connective<L>(es: &[Expr<L>], decisive: bool, leaf: &impl Fn(&L) -> Option<Value>) -> Option<Value> {
+    let mut all_known = true;
+    for e in es {
+        match truth(e, leaf) {
+            Some(b) if b == decisive => return Some(Value::Bool(decisive)),
+            Some(_) => {}
+            None => all_known = false,
+        }
+    }
+    all_known.then_some(Value::Bool(!decisive))
+}
+
+fn compare(op: Comparison, a: Value, b: Value) -> Option<bool> {
+    match (op, a, b) {
+        (Comparison::Eq, Value::Int(a), Value::Int(b)) => Some(a == b),
+        (Comparison::Lt, Value::Int(a), Value::Int(b)) => Some(a < b),
+        (Comparison::Le, Value::Int(a), Value::Int(b)) => Some(a <= b),
+        (Comparison::Eq, Value::Enum(a), Value::Enum(b)) => Some(a == b),
+        (Comparison::Eq, Value::Bool(a), Value::Bool(b)) => Some(a == b),
+        _ => None,
+    }
+}

@@ -1,0 +1,313 @@
+//! One system, explored explicitly and lazily: states, moves, and which states can go on.
+
+use crate::eval::{eval, truth};
+use crate::report::{Error, Stop};
+use hyperplan_problem::{ActionId, Expr, Leaf, System, Type, Update, Value, VarId};
+use rustc_hash::FxHashMap;
+use std::rc::Rc;
+use typed_index_collections::TiVec;
+
+/// A state that was met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) struct StateId(pub(crate) u32);
+
+impl From<usize> for StateId {
+    fn from(index: usize) -> Self {
+        StateId(u32::try_from(index).expect("the budget of states is kept below 2^32"))
+    }
+}
+
+impl From<StateId> for usize {
+    fn from(id: StateId) -> usize {
+        id.0 as usize
+    }
+}
+
+/// A transition, seen from its source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Move {
+    pub(crate) action: ActionId,
+    pub(crate) to: StateId,
+}
+
+/// How much further a prefix must be able to go to count as a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Ahead {
+    /// For ever.
+    Forever,
+    /// This many steps.
+    Steps(u32),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Liveness {
+    Unknown,
+    /// On the stack of the search.
+    Open,
+    Live,
+    Dead,
+}
+
+#[derive(Debug)]
+struct Node {
+    values: Rc<[Value]>,
+    labels: Rc<[bool]>,
+    moves: Option<Rc<[Move]>>,
+    liveness: Liveness,
+    /// It can go at least so many steps ...
+    at_least: u32,
+    /// ... and no more than so many.
+    at_most: u32,
+}
+
+/// Actions that lead to the same values.
+type Target<'p> = (&'p [ActionId], Vec<Value>);
+
+/// The part of a system's transition graph seen so far.
+#[derive(Debug)]
+pub(crate) struct Graph<'p> {
+    pub(crate) system: &'p System,
+    nodes: TiVec<StateId, Node>,
+    index: FxHashMap<Rc<[Value]>, StateId>,
+    pub(crate) limit: usize,
+}
+
+pub(crate) const ILL_TYPED: Error = Error::Malformed { what: "an expression of a system has no value" };
+
+impl<'p> Graph<'p> {
+    /// Nothing seen yet; at most `limit` states will be.
+    pub(crate) fn new(system: &'p System, limit: usize) -> Self {
+        Graph {
+            system,
+            nodes: TiVec::new(),
+            index: FxHashMap::default(),
+            limit: limit.min(u32::MAX as usize - 1),
+        }
+    }
+
+    /// Number of states seen.
+    pub(crate) fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// The values of the variables.
+    pub(crate) fn values(&self, state: StateId) -> &Rc<[Value]> {
+        &self.nodes[state].values
+    }
+
+    /// What a leaf reads.
+    pub(crate) fn leaf(&self, state: StateId, leaf: Leaf) -> Option<Value> {
+        let node = &self.nodes[state];
+        read(&node.values, &node.labels, leaf)
+    }
+
+    /// Whether `init` holds.
+    pub(crate) fn is_initial(&self, state: StateId) -> Result<bool, Stop> {
+        truth(&self.system.init, &|l| self.leaf(state, *l)).ok_or(Stop::Error(ILL_TYPED))
+    }
+
+    /// Whether each variable has a value of its type.
+    pub(crate) fn is_state(&self, values: &[Value]) -> bool {
+        values.len() == self.system.vars.len()
+            && self.system.vars.iter().zip(values).all(|(var, value)| belongs(&var.ty, *value))
+    }
+
+    /// The id of a state, which must satisfy [`Graph::is_state`].
+    pub(crate) fn intern(&mut self, values: &[Value]) -> Result<StateId, Stop> {
+        if let Some(&id) = self.index.get(values) {
+            return Ok(id);
+        }
+        if self.nodes.len() >= self.limit {
+            return Err(Stop::Budget);
+        }
+        let values: Rc<[Value]> = values.into();
+        let mut labels = Vec::with_capacity(self.system.labels.len());
+        // A label reads only labels before it.
+        for label in &self.system.labels {
+            let holds = truth(&label.expr, &|l| read(&values, &labels, *l)).ok_or(ILL_TYPED)?;
+            labels.push(holds);
+        }
+        let id = self.nodes.push_and_get_key(Node {
+            values: values.clone(),
+            labels: labels.into(),
+            moves: None,
+            liveness: Liveness::Unknown,
+            at_least: 0,
+            at_most: u32::MAX,
+        });
+        self.index.insert(values, id);
+        Ok(id)
+    }
+
+    /// The transitions from a state, sorted, without repetition.
+    pub(crate) fn moves(&mut self, state: StateId) -> Result<Rc<[Move]>, Stop> {
+        if let Some(moves) = &self.nodes[state].moves {
+            return Ok(moves.clone());
+        }
+        let mut moves = Vec::new();
+        for (actions, target) in self.targets(state)? {
+            let to = self.intern(&target)?;
+            moves.extend(actions.iter().map(|&action| Move { action, to }));
+        }
+        moves.sort_unstable();
+        moves.dedup();
+        let moves: Rc<[Move]> = moves.into();
+        self.nodes[state].moves = Some(moves.clone());
+        Ok(moves)
+    }
+
+    /// Whether there is a transition with that action; the state's moves must have been asked for.
+    pub(crate) fn enabled(&self, state: StateId, action: ActionId) -> Option<bool> {
+        self.nodes[state].moves.as_ref().map(|moves| moves.iter().any(|m| m.action == action))
+    }
+
+    /// Where each group of actions leads.
+    fn targets(&self, state: StateId) -> Result<Vec<Target<'p>>, Stop> {
+        let system = self.system;
+        let here = &self.nodes[state].values;
+        let holds = |e: &Expr<Leaf>| truth(e, &|l| self.leaf(state, *l)).ok_or(ILL_TYPED);
+        if holds(&system.absorb)? {
+            return Ok(vec![(&system.actions, here.to_vec())]);
+        }
+        let mut found = Vec::new();
+        for clause in &system.clauses {
+            if !holds(&clause.guard)? {
+                continue;
+            }
+            let mut targets = vec![here.to_vec()];
+            for (var, update) in &clause.updates {
+                let choices = self.choices(state, *var, update)?;
+                if targets.len().saturating_mul(choices.len()) > self.limit {
+                    return Err(Stop::Budget);
+                }
+                targets = targets
+                    .iter()
+                    .flat_map(|target| choices.iter().map(move |&choice| with(target, *var, choice)))
+                    .collect();
+            }
+            found.extend(targets.into_iter().map(|target| (clause.actions.as_slice(), target)));
+        }
+        Ok(found)
+    }
+
+    /// What an update allows, within the variable's type.
+    fn choices(&self, state: StateId, var: VarId, update: &Update) -> Result<Vec<Value>, Stop> {
+        let ty = &self.system.vars.get(var).ok_or(ILL_TYPED)?.ty;
+        let value = |e: &Expr<Leaf>| eval(e, &|l| self.leaf(state, *l)).ok_or(ILL_TYPED);
+        let mut values = match update {
+            Update::Assign(e) => vec![value(e)?],
+            Update::OneOf(es) => es.iter().map(value).collect::<Result<_, _>>()?,
+            Update::Within(lo, hi) => match ty {
+                Type::Range { lo: least, hi: most } => integers(*lo.max(least), *hi.min(most), self.limit)?,
+                Type::Bool | Type::Enum(_) => return Err(ILL_TYPED.into()),
+            },
+        };
+        values.retain(|v| belongs(ty, *v));
+        Ok(values)
+    }
+
+    /// Whether a prefix that ends here can go on so far.
+    pub(crate) fn can_go(&mut self, state: StateId, ahead: Ahead) -> Result<bool, Stop> {
+        match ahead {
+            Ahead::Forever => self.is_live(state),
+            Ahead::Steps(steps) => self.has_steps(state, steps),
+        }
+    }
+
+    /// In a finite system a state is live if it reaches a cycle, so a depth-first search may stop at the first
+    /// state that is live or on its own stack: the whole stack is live then.
+    fn is_live(&mut self, state: StateId) -> Result<bool, Stop> {
+        match self.nodes[state].liveness {
+            Liveness::Live => return Ok(true),
+            Liveness::Dead => return Ok(false),
+            Liveness::Unknown | Liveness::Open => {}
+        }
+        let mut stack = vec![(state, self.moves(state)?, 0_usize)];
+        self.nodes[state].liveness = Liveness::Open;
+        while let Some((here, moves, next)) = stack.last_mut() {
+            let Some(to) = moves.get(*next).map(|m| m.to) else {
+                self.nodes[*here].liveness = Liveness::Dead;
+                stack.pop();
+                continue;
+            };
+            *next += 1;
+            match self.nodes[to].liveness {
+                Liveness::Dead => {}
+                Liveness::Unknown => {
+                    self.nodes[to].liveness = Liveness::Open;
+                    let moves = self.moves(to)?;
+                    stack.push((to, moves, 0));
+                }
+                Liveness::Open | Liveness::Live => {
+                    for (open, _, _) in stack {
+                        self.nodes[open].liveness = Liveness::Live;
+                    }
+                    return Ok(true);
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// Whether some path of `steps` steps starts here; looks no further than that.
+    fn has_steps(&mut self, state: StateId, steps: u32) -> Result<bool, Stop> {
+        if self.nodes[state].at_least >= steps {
+            return Ok(true);
+        }
+        let mut stack = vec![(state, steps, 0_usize)];
+        while let Some((here, steps, next)) = stack.last_mut() {
+            let (here, steps) = (*here, *steps);
+            if self.nodes[here].at_least >= steps {
+                for (open, steps, _) in stack {
+                    let node = &mut self.nodes[open];
+                    node.at_least = node.at_least.max(steps);
+                }
+                return Ok(true);
+            }
+            let moves = self.moves(here)?;
+            match moves.get(*next) {
+                Some(m) if self.nodes[here].at_most >= steps => {
+                    *next += 1;
+                    stack.push((m.to, steps - 1, 0));
+                }
+                _ => {
+                    let node = &mut self.nodes[here];
+                    node.at_most = node.at_most.min(steps - 1);
+                    stack.pop();
+                }
+            }
+        }
+        Ok(false)
+    }
+}
+
+fn read(values: &[Value], labels: &[bool], leaf: Leaf) -> Option<Value> {
+    match leaf {
+        Leaf::Var(v) => values.get(usize::from(v)).copied(),
+        Leaf::Label(l) => labels.get(usize::from(l)).copied().map(Value::Bool),
+    }
+}
+
+fn with(values: &[Value], var: VarId, value: Value) -> Vec<Value> {
+    let mut values = values.to_vec();
+    values[usize::from(var)] = value;
+    values
+}
+
+pub(crate) fn belongs(ty: &Type, value: Value) -> bool {
+    match (ty, value) {
+        (Type::Bool, Value::Bool(_)) => true,
+        (Type::Range { lo, hi }, Value::Int(n)) => (*lo..=*hi).contains(&n),
+        (Type::Enum(names), Value::Enum(i)) => (i as usize) < names.len(),
+        _ => false,
+    }
+}
+
+/// The integers `lo..=hi`, if there are no more than `limit`.
+pub(crate) fn integers(lo: i64, hi: i64, limit: usize) -> Result<Vec<Value>, Stop> {
+    let count = (i128::from(hi) - i128::from(lo) + 1).max(0);
+    if count > limit as i128 {
+        return Err(Stop::Budget);
+    }
+    Ok((lo..=hi).map(Value::Int).collect())
+}

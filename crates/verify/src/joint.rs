@@ -1,0 +1,185 @@
+//! Joint states and joint moves of the path variables of one block.
+
+use crate::graph::{Graph, StateId};
+use crate::report::Stop;
+use hyperplan_problem::{ActionId, PathId, SystemId};
+use rustc_hash::FxHashMap;
+use std::rc::Rc;
+use typed_index_collections::TiVec;
+
+/// A joint state of a block; 0 is [`JointId::START`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) struct JointId(pub(crate) u32);
+
+impl JointId {
+    /// Before time 0: its moves lead to the initial states.
+    pub(crate) const START: JointId = JointId(0);
+}
+
+impl From<usize> for JointId {
+    fn from(index: usize) -> Self {
+        JointId(u32::try_from(index).expect("the budget of states is kept below 2^32"))
+    }
+}
+
+impl From<JointId> for usize {
+    fn from(id: JointId) -> usize {
+        id.0 as usize
+    }
+}
+
+/// What the paths of a block just did together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) struct DeedId(pub(crate) u32);
+
+impl From<usize> for DeedId {
+    fn from(index: usize) -> Self {
+        DeedId(u32::try_from(index).expect("joint moves are kept below 2^32"))
+    }
+}
+
+impl From<DeedId> for usize {
+    fn from(id: DeedId) -> usize {
+        id.0 as usize
+    }
+}
+
+/// A joint transition, seen from its source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct JointMove {
+    pub(crate) deed: DeedId,
+    pub(crate) to: JointId,
+}
+
+/// What each path just did: nothing, at time 0.
+type Deed = Rc<[Option<ActionId>]>;
+
+/// The product of the graphs of a block's path variables, explored lazily.
+#[derive(Debug)]
+pub(crate) struct Joint {
+    /// The path variables and their systems.
+    pub(crate) paths: Vec<(PathId, SystemId)>,
+    states: TiVec<JointId, Rc<[StateId]>>,
+    state_index: FxHashMap<Rc<[StateId]>, JointId>,
+    moves: TiVec<JointId, Option<Rc<[JointMove]>>>,
+    deeds: TiVec<DeedId, Deed>,
+    deed_index: FxHashMap<Deed, DeedId>,
+    remembered: usize,
+    limit: usize,
+}
+
+/// How many joint moves of a block are kept; others are computed again.
+const REMEMBERED_MOVES: usize = 10_000_000;
+
+/// The ways in which one path of a block can move.
+type Options = Vec<(Option<ActionId>, StateId)>;
+
+impl Joint {
+    /// Nothing explored yet; at most `limit` joint states will be.
+    pub(crate) fn new(paths: Vec<(PathId, SystemId)>, limit: usize) -> Self {
+        Joint {
+            paths,
+            // The start has no states; its entry keeps ids and indices in step.
+            states: TiVec::from(vec![Rc::from([])]),
+            state_index: FxHashMap::default(),
+            moves: TiVec::from(vec![None]),
+            deeds: TiVec::new(),
+            deed_index: FxHashMap::default(),
+            remembered: 0,
+            limit: limit.min(u32::MAX as usize - 1),
+        }
+    }
+
+    /// Number of joint states seen.
+    pub(crate) fn len(&self) -> usize {
+        self.states.len()
+    }
+
+    /// Number of deeds seen.
+    pub(crate) fn deeds(&self) -> usize {
+        self.deeds.len()
+    }
+
+    /// The states of the paths, in order; none at the start.
+    pub(crate) fn states(&self, joint: JointId) -> &[StateId] {
+        &self.states[joint]
+    }
+
+    /// What each path just did.
+    pub(crate) fn deed(&self, deed: DeedId) -> &[Option<ActionId>] {
+        &self.deeds[deed]
+    }
+
+    /// All joint moves.
+    pub(crate) fn moves(
+        &mut self,
+        graphs: &mut TiVec<SystemId, Graph<'_>>,
+        joint: JointId,
+    ) -> Result<Rc<[JointMove]>, Stop> {
+        if let Some(moves) = &self.moves[joint] {
+            return Ok(moves.clone());
+        }
+        let mut options: Vec<Options> = Vec::with_capacity(self.paths.len());
+        let states = self.states[joint].clone();
+        for (i, &(_, system)) in self.paths.iter().enumerate() {
+            let graph = &mut graphs[system];
+            options.push(match states.get(i) {
+                Some(&state) => graph.moves(state)?.iter().map(|m| (Some(m.action), m.to)).collect(),
+                None => graph.initial_states()?.into_iter().map(|state| (None, state)).collect(),
+            });
+        }
+        let moves = self.product(&options)?;
+        if self.remembered + moves.len() <= REMEMBERED_MOVES {
+            self.remembered += moves.len();
+            self.moves[joint] = Some(moves.clone());
+        }
+        Ok(moves)
+    }
+
+    fn product(&mut self, options: &[Options]) -> Result<Rc<[JointMove]>, Stop> {
+        let count = options.iter().try_fold(1_usize, |n, o| n.checked_mul(o.len())).ok_or(Stop::Budget)?;
+        if count > self.limit.saturating_mul(4) {
+            return Err(Stop::Budget);
+        }
+        let mut moves = Vec::with_capacity(count);
+        let mut actions = Vec::with_capacity(options.len());
+        let mut targets = Vec::with_capacity(options.len());
+        for number in 0..count {
+            actions.clear();
+            targets.clear();
+            let mut rest = number;
+            for option in options {
+                let (action, to) = option[rest % option.len()];
+                rest /= option.len();
+                actions.push(action);
+                targets.push(to);
+            }
+            moves.push(JointMove { deed: self.intern_deed(&actions), to: self.intern(&targets)? });
+        }
+        Ok(moves.into())
+    }
+
+    fn intern(&mut self, states: &[StateId]) -> Result<JointId, Stop> {
+        if let Some(&id) = self.state_index.get(states) {
+            return Ok(id);
+        }
+        if self.states.len() > self.limit {
+            return Err(Stop::Budget);
+        }
+        let states: Rc<[StateId]> = states.into();
+        let id = self.states.push_and_get_key(states.clone());
+        self.moves.push(None);
+        self.state_index.insert(states, id);
+        Ok(id)
+    }
+
+    fn intern_deed(&mut self, actions: &[Option<ActionId>]) -> DeedId {
+        if let Some(&id) = self.deed_index.get(actions) {
+            return id;
+        }
+        let actions: Deed = actions.into();
+        let id = self.deeds.push_and_get_key(actions.clone());
+        self.deed_index.insert(actions, id);
+        id
+    }
+}

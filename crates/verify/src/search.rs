@@ -1,0 +1,192 @@
+//! The search: values of all levels, moved step by step (see the crate's documentation).
+
+use crate::atoms::{Atom, translate};
+use crate::graph::{Graph, StateId};
+use crate::joint::{DeedId, JointId};
+use crate::level::{Level, levels};
+use crate::progress::Progress;
+use crate::recent::Recent;
+use crate::report::{Budget, Error, Reached, Stop};
+use crate::residual::{AtomId, ResidualId, Residuals};
+use crate::valuation::{ValuationId, Valuations};
+use crate::value::{Pair, Sets, ValueId};
+use hyperplan_problem::{ActionId, Mode, Objective, PathId, Problem, SystemId};
+use rustc_hash::{FxHashMap, FxHashSet};
+use typed_index_collections::TiVec;
+
+/// A trace whose states are interned.
+#[derive(Debug)]
+pub(crate) struct Fixed {
+    pub(crate) path: PathId,
+    pub(crate) states: Vec<StateId>,
+    pub(crate) actions: Vec<ActionId>,
+}
+
+/// How a pair of the first block came about.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Came {
+    /// Index in the layer before.
+    parent: u32,
+    pub(crate) by: DeedId,
+    pub(crate) to: JointId,
+}
+
+/// What the search found.
+#[derive(Debug)]
+pub(crate) enum Outcome {
+    /// The truth value, and the moves of the first block that decide it, where some do.
+    Decided(bool, Option<Vec<Came>>),
+    /// It depends on what a trace would have done beyond its end.
+    Missing,
+}
+
+/// All that a search needs.
+#[derive(Debug)]
+pub(crate) struct Search<'p> {
+    pub(crate) graphs: TiVec<SystemId, Graph<'p>>,
+    pub(crate) levels: Vec<Level>,
+    pub(crate) fixed: Vec<Fixed>,
+    pub(crate) fixed_atoms: Vec<AtomId>,
+    pub(crate) atoms: TiVec<AtomId, Atom>,
+    pub(crate) residuals: Residuals,
+    pub(crate) root: ResidualId,
+    pub(crate) progress: Progress,
+    pub(crate) valuations: Valuations,
+    pub(crate) recent: Recent,
+    pub(crate) systems: TiVec<PathId, SystemId>,
+    pub(crate) mode: Mode,
+    pub(crate) time: u32,
+    /// Where each path is, and what it just did; no state where its trace has ended.
+    pub(crate) states: TiVec<PathId, Option<StateId>>,
+    pub(crate) took: TiVec<PathId, Option<ActionId>>,
+    pub(crate) before: Sets,
+    pub(crate) now: Sets,
+    pub(crate) memo: FxHashMap<Box<[u32]>, ValueId>,
+    pub(crate) budget: Budget,
+    pub(crate) reached: Reached,
+}
+
+impl<'p> Search<'p> {
+    /// A search in which the first `fixed` path variables are given by traces, still to be set.
+    pub(crate) fn new(
+        problem: &'p Problem,
+        objective: &'p Objective,
+        fixed: usize,
+        budget: &Budget,
+    ) -> Result<Self, Stop> {
+        if objective.paths.iter().any(|p| problem.systems.get(p.system).is_none()) {
+            return Err(Error::Malformed { what: "a path variable has no system" }.into());
+        }
+        let mut residuals = Residuals::new(objective.mode);
+        let (root, atoms) = translate(objective, &mut residuals)?;
+        if atoms.iter().any(|a| a.paths.iter().any(|&p| objective.paths.get(p).is_none())) {
+            return Err(Error::Malformed { what: "an atom reads an unknown path" }.into());
+        }
+        let limit = usize::try_from(budget.states).unwrap_or(usize::MAX);
+        let levels = levels(objective, fixed, &atoms, limit)?;
+        let is_fixed = |a: &Atom| a.paths.iter().all(|p| usize::from(*p) < fixed);
+        Ok(Search {
+            graphs: problem.systems.iter().map(|s| Graph::new(s, limit)).collect(),
+            levels,
+            fixed: Vec::new(),
+            fixed_atoms: atoms.iter_enumerated().filter(|(_, a)| is_fixed(a)).map(|(id, _)| id).collect(),
+            valuations: Valuations::new(atoms.len()),
+            recent: Recent::new(),
+            atoms,
+            residuals,
+            root,
+            progress: Progress::new(usize::try_from(budget.entries).unwrap_or(usize::MAX)),
+            systems: objective.paths.iter().map(|p| p.system).collect(),
+            mode: objective.mode,
+            time: 0,
+            states: objective.paths.iter().map(|_| None).collect(),
+            took: objective.paths.iter().map(|_| None).collect(),
+            before: Sets::default(),
+            now: Sets::default(),
+            memo: FxHashMap::default(),
+            budget: *budget,
+            reached: Reached::default(),
+        })
+    }
+
+    /// How far it got.
+    pub(crate) fn reached(&self) -> Reached {
+        let graphs = self.graphs.iter().map(Graph::len).max().unwrap_or(0);
+        let joints = self.levels.iter().map(|l| l.joint.len()).max().unwrap_or(0);
+        Reached { states: graphs.max(joints) as u64, ..self.reached }
+    }
+
+    /// The objective's value on the fixed traces. With `trail`, remembers how each pair came about.
+    pub(crate) fn run(&mut self, trail: bool) -> Result<Outcome, Stop> {
+        let decisive = self.levels[0].decisive;
+        let mut layer: Vec<Pair> = vec![(JointId::START, ValueId::START)];
+        let mut trails: Vec<Vec<Came>> = Vec::new();
+        let mut seen = FxHashSet::default();
+        let mut missing = false;
+        loop {
+            let base = self.enter()?;
+            let mut next = Vec::new();
+            let mut came = Vec::new();
+            seen.clear();
+            for (parent, &(joint, value)) in (0_u32..).zip(&layer) {
+                for mv in self.joint_moves(0, joint)?.iter() {
+                    let Some(value) = self.follow(0, *mv, value, base)? else { continue };
+                    let here = Came { parent, by: mv.deed, to: mv.to };
+                    if value == ValueId::of(decisive) {
+                        let chain = trail.then(|| chain(&trails, here));
+                        return Ok(Outcome::Decided(decisive, chain));
+                    }
+                    missing |= value == ValueId::MISSING;
+                    if value.is_constant() || !seen.insert((mv.to, value)) {
+                        continue;
+                    }
+                    self.count_entries(1)?;
+                    next.push((mv.to, value));
+                    if trail {
+                        came.push(here);
+                    }
+                }
+            }
+            if next.is_empty() {
+                return Ok(if missing { Outcome::Missing } else { Outcome::Decided(!decisive, None) });
+            }
+            trails.push(came);
+            layer = next;
+            self.time += 1;
+        }
+    }
+
+    /// Turns to the present step: where the fixed traces are, and what their atoms say.
+    fn enter(&mut self) -> Result<ValuationId, Stop> {
+        if self.mode == Mode::Within(self.time) {
+            self.progress.at_last_position();
+            self.recent.clear();
+        }
+        self.before = std::mem::take(&mut self.now);
+        self.memo.clear();
+        self.levels[0].forget();
+        let time = self.time as usize;
+        for trace in &self.fixed {
+            let state = trace.states.get(time).copied();
+            self.states[trace.path] = state;
+            self.took[trace.path] = time.checked_sub(1).and_then(|t| trace.actions.get(t)).copied();
+            if let Some(state) = state {
+                self.graphs[self.systems[trace.path]].moves(state)?;
+            }
+        }
+        Ok(self.fixed_part())
+    }
+}
+
+/// The moves that lead to `last`, from time 0.
+fn chain(trails: &[Vec<Came>], last: Came) -> Vec<Came> {
+    let mut moves = vec![last];
+    let mut parent = last.parent;
+    for layer in trails.iter().rev() {
+        let Some(&came) = layer.get(parent as usize) else { break };
+        moves.push(came);
+        parent = came.parent;
+    }
+    moves.reverse();
+    moves
+}

@@ -1,0 +1,205 @@
+//! One step: how a move of one block changes the values of the levels below it.
+
+use crate::graph::Ahead;
+use crate::joint::{JointId, JointMove};
+use crate::level::Level;
+use crate::recent::Look;
+use crate::report::Stop;
+use crate::residual::ResidualId;
+use crate::scene::Scene;
+use crate::search::Search;
+use crate::valuation::ValuationId;
+use crate::value::{Pair, ValueId};
+use hyperplan_problem::Mode;
+use std::rc::Rc;
+
+impl Search<'_> {
+    /// All joint moves of a block.
+    pub(crate) fn joint_moves(&mut self, level: usize, joint: JointId) -> Result<Rc<[JointMove]>, Stop> {
+        self.levels[level].joint.moves(&mut self.graphs, joint)
+    }
+
+    /// How much further a prefix that ends at the present step must be able to go.
+    pub(crate) fn ahead(&self) -> Ahead {
+        match self.mode {
+            Mode::Bounded => Ahead::Forever,
+            Mode::Within(k) => Ahead::Steps(k.saturating_sub(self.time)),
+        }
+    }
+
+    /// The value below a block after one of its moves, or `None` where the move leads to no path.
+    pub(crate) fn follow(
+        &mut self,
+        level: usize,
+        mv: JointMove,
+        inner: ValueId,
+        base: ValuationId,
+    ) -> Result<Option<ValueId>, Stop> {
+        self.reached.moves += 1;
+        if self.reached.moves > self.budget.moves {
+            return Err(Stop::Budget);
+        }
+        let innermost = level + 1 == self.levels.len();
+        let look = |search: &Self| {
+            let (states, deeds) = search.levels[level].remembered(mv).filter(|_| innermost)?;
+            Some(Look { value: inner, base, states, deeds })
+        };
+        if let Some(known) = look(self).and_then(|look| self.recent.get(look)) {
+            return Ok(Some(known));
+        }
+        if !self.place(level, mv)? {
+            return Ok(None);
+        }
+        let valuation = self.valuation(level, mv, base);
+        let value = self.advance(level + 1, inner, valuation)?;
+        if let Some(look) = look(self) {
+            self.recent.put(look, value);
+        }
+        Ok(Some(value))
+    }
+
+    /// Makes a move, unless it leads to no path.
+    fn place(&mut self, level: usize, mv: JointMove) -> Result<bool, Stop> {
+        let ahead = self.ahead();
+        let Level { joint, reads_enabled, .. } = &self.levels[level];
+        let deed = joint.deed(mv.deed);
+        for ((&(path, system), &state), &action) in joint.paths.iter().zip(joint.states(mv.to)).zip(deed) {
+            let graph = &mut self.graphs[system];
+            if !graph.can_go(state, ahead)? {
+                return Ok(false);
+            }
+            if *reads_enabled {
+                graph.moves(state)?;
+            }
+            self.states[path] = Some(state);
+            self.took[path] = action;
+        }
+        let Level { viable, joint, .. } = &mut self.levels[level];
+        viable.resize(joint.len(), false);
+        viable[mv.to] = true;
+        Ok(true)
+    }
+
+    /// The value of a level one step later, where the outer blocks have moved already.
+    fn advance(&mut self, level: usize, value: ValueId, base: ValuationId) -> Result<ValueId, Stop> {
+        if value.is_constant() {
+            return Ok(value);
+        }
+        if level == self.levels.len() {
+            let residual = if value == ValueId::START { self.root } else { ResidualId(value.0) };
+            let next = self.progress.read(&mut self.residuals, &self.valuations, residual, base)?;
+            return Ok(ValueId(next.0));
+        }
+        let key = self.memo_key(level, value, base);
+        if let Some(&known) = self.memo.get(key.as_slice()) {
+            return Ok(known);
+        }
+        let next = self.advance_set(level, value, base)?;
+        self.memo.insert(key.into(), next);
+        Ok(next)
+    }
+
+    fn advance_set(&mut self, level: usize, value: ValueId, base: ValuationId) -> Result<ValueId, Stop> {
+        let decisive = self.levels[level].decisive;
+        let mut pairs: Vec<Pair> = Vec::new();
+        for &(joint, inner) in self.before.get(value).iter() {
+            if inner == ValueId::MISSING {
+                pairs.push((joint, inner));
+                continue;
+            }
+            for mv in self.joint_moves(level, joint)?.iter() {
+                match self.follow(level, *mv, inner, base)? {
+                    Some(v) if v == ValueId::of(decisive) => return Ok(v),
+                    Some(v) if v == ValueId::of(!decisive) => {}
+                    Some(ValueId::MISSING) => pairs.push((JointId::START, ValueId::MISSING)),
+                    Some(v) => pairs.push((mv.to, v)),
+                    None => {}
+                }
+            }
+        }
+        pairs.sort_unstable();
+        pairs.dedup();
+        match pairs.as_slice() {
+            [] => Ok(ValueId::of(!decisive)),
+            [(_, ValueId::MISSING)] => Ok(ValueId::MISSING),
+            _ => {
+                let size = pairs.len() as u64;
+                let (id, new) = self.now.intern(pairs);
+                self.count_entries(if new { size } else { 0 })?;
+                Ok(id)
+            }
+        }
+    }
+
+    /// Everything on which the value of a level after this step can depend.
+    fn memo_key(&self, level: usize, value: ValueId, base: ValuationId) -> Vec<u32> {
+        let level_id = u32::try_from(level).unwrap_or(u32::MAX);
+        let mut key = vec![level_id, value.0, base.0];
+        let seen = &self.levels[level];
+        key.extend(seen.outer_states.iter().map(|&p| self.states[p].map_or(u32::MAX, |s| s.0)));
+        key.extend(seen.outer_actions.iter().map(|&p| self.took[p].map_or(u32::MAX, |a| a.0)));
+        key
+    }
+
+    /// Counts pairs that are kept.
+    pub(crate) fn count_entries(&mut self, entries: u64) -> Result<(), Stop> {
+        self.reached.entries += entries;
+        if self.reached.entries > self.budget.entries { Err(Stop::Budget) } else { Ok(()) }
+    }
+
+    /// What the atoms of the outer blocks, `base`, and those of this block say after a move of this block.
+    fn valuation(&mut self, level: usize, mv: JointMove, base: ValuationId) -> ValuationId {
+        let Level { local, state_atoms, action_atoms, mixed_atoms, by_state, by_deed, joint, .. } =
+            &mut self.levels[level];
+        let remember = *local || level == 0;
+        let scene = Scene {
+            atoms: &self.atoms,
+            graphs: &self.graphs,
+            systems: &self.systems,
+            states: &self.states,
+            took: &self.took,
+        };
+        let valuations = &mut self.valuations;
+        let by_state = match by_state.get(mv.to).copied().flatten() {
+            Some(known) => known,
+            None => {
+                let part = valuations.part(scene.values(state_atoms));
+                if remember {
+                    by_state.resize(joint.len(), None);
+                    by_state[mv.to] = Some(part);
+                }
+                part
+            }
+        };
+        let by_deed = match by_deed.get(mv.deed).copied().flatten() {
+            Some(known) => known,
+            None => {
+                let part = valuations.part(scene.values(action_atoms));
+                if remember {
+                    by_deed.resize(joint.deeds(), None);
+                    by_deed[mv.deed] = Some(part);
+                }
+                part
+            }
+        };
+        let mut all = valuations.join(by_state, by_deed);
+        all = valuations.join(base, all);
+        if mixed_atoms.is_empty() {
+            return all;
+        }
+        let mixed = valuations.part(scene.values(mixed_atoms));
+        valuations.join(all, mixed)
+    }
+
+    /// What the atoms that read fixed traces only say now.
+    pub(crate) fn fixed_part(&mut self) -> ValuationId {
+        let scene = Scene {
+            atoms: &self.atoms,
+            graphs: &self.graphs,
+            systems: &self.systems,
+            states: &self.states,
+            took: &self.took,
+        };
+        self.valuations.part(scene.values(&self.fixed_atoms))
+    }
+}

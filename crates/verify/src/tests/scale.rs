@@ -1,0 +1,117 @@
+//! A shortest path on grids of some size: a check should cost little more than cells x steps.
+
+use super::build::span;
+use crate::{Budget, Defeat, Verdict, check};
+use hyperplan_problem::{
+    ActionId, Clause, Comparison, Expr, Formula, Interval, Label, LabelId, Leaf, Mode, Node, Objective,
+    PathId, PathLeaf, PathVar, Problem, Quantifier, State, Strategy, System, SystemId, TemporalOp, Trace,
+    Type, Update, Value, Var, VarId,
+};
+
+const X: VarId = VarId(0);
+const Y: VarId = VarId(1);
+
+fn corner(n: i64) -> Expr<Leaf> {
+    let at = |v| Box::new(Expr::Leaf(Leaf::Var(v)));
+    let value = |n| Box::new(Expr::Const(Value::Int(n)));
+    let equal = |v| Expr::Compare(Comparison::Eq, at(v), value(n));
+    Expr::And(vec![equal(X), equal(Y)])
+}
+
+fn grid(n: i64) -> System {
+    let clause = |action: u32, var: VarId, by: i64| Clause {
+        actions: vec![ActionId(action)],
+        guard: Expr::TRUE,
+        updates: vec![(
+            var,
+            Update::Assign(Expr::Add(vec![Expr::Leaf(Leaf::Var(var)), Expr::Const(Value::Int(by))])),
+        )],
+        span: span(),
+        generated: true,
+    };
+    let var = |name: &str| Var { name: name.into(), ty: Type::Range { lo: 0, hi: n - 1 }, span: span() };
+    let label = |name: &str, expr| Label { name: name.into(), expr, span: span() };
+    System {
+        name: "Grid".into(),
+        vars: vec![var("x"), var("y")].into(),
+        actions: (0..4).map(ActionId).collect(),
+        clauses: vec![clause(0, X, 1), clause(1, X, -1), clause(2, Y, 1), clause(3, Y, -1)],
+        init: Expr::TRUE,
+        labels: vec![label("start", corner(0)), label("goal", corner(n - 1))].into(),
+        absorb: Expr::FALSE,
+        observe: Vec::new(),
+        map: None,
+        span: span(),
+    }
+}
+
+/// `start[p] & F[0,T] goal[p] & (start[q] -> (!goal[q] U[0,T] goal[p]))`
+fn shortest(n: i64, horizon: u32) -> Problem {
+    let mut f = Formula::default();
+    let mut label = |path: u32, label: u32| {
+        f.push(Node::Atom(Expr::Leaf(PathLeaf::State(PathId(path), Leaf::Label(LabelId(label))))), span())
+    };
+    let (start_p, goal_p, start_q, goal_q) = (label(0, 0), label(0, 1), label(1, 0), label(1, 1));
+    let interval = Interval { lo: 0, hi: Some(horizon) };
+    let mut add = |node| f.push(node, span());
+    let reach = add(Node::Finally(interval, goal_p));
+    let not_yet = add(Node::Not(goal_q));
+    let until = add(Node::Temporal(TemporalOp::Until, interval, not_yet, goal_p));
+    let slower = add(Node::Implies(start_q, until));
+    add(Node::And(vec![start_p, reach, slower]));
+    let path =
+        |name: &str, quantifier| PathVar { name: name.into(), quantifier, system: SystemId(0), span: span() };
+    let paths = vec![path("p", Quantifier::Exists), path("q", Quantifier::Forall)];
+    let objective =
+        Objective { name: "o".into(), paths: paths.into(), mode: Mode::Bounded, formula: f, span: span() };
+    Problem {
+        actions: ["right", "left", "up", "down"].map(String::from).to_vec().into(),
+        systems: vec![grid(n)].into(),
+        objectives: vec![objective],
+    }
+}
+
+/// Wanders `detours` times to and fro, then right, then up.
+fn walk(n: i64, detours: usize) -> Strategy {
+    let side = usize::try_from(n - 1).unwrap();
+    let moves = [[0, 1].repeat(detours), vec![0; side], vec![2; side]].concat();
+    let (mut x, mut y) = (0, 0);
+    let state = |x, y| -> State { vec![Value::Int(x), Value::Int(y)].into() };
+    let mut states = vec![state(0, 0)];
+    for action in &moves {
+        match action {
+            0 => x += 1,
+            1 => x -= 1,
+            _ => y += 1,
+        }
+        states.push(state(x, y));
+    }
+    Strategy {
+        traces: vec![Trace { path: PathId(0), states, actions: moves.into_iter().map(ActionId).collect() }],
+    }
+}
+
+fn run(n: i64, detours: usize) -> Verdict {
+    let problem = shortest(n, u32::try_from(2 * n).unwrap() + 1);
+    check(&problem, &problem.objectives[0], &walk(n, detours), &Budget::default()).unwrap()
+}
+
+#[test]
+fn a_shortest_path_on_a_grid() {
+    assert_eq!(run(20, 0), Verdict::Holds);
+    let Verdict::Fails(Defeat::Paths(traces)) = run(20, 1) else { panic!("a detour is not shortest") };
+    let steps_to_goal = traces[0].states.iter().position(|s| **s == [Value::Int(19), Value::Int(19)]);
+    assert_eq!(steps_to_goal, Some(38));
+}
+
+#[test]
+#[ignore = "for measuring, in a release build"]
+fn a_grid_of_60() {
+    assert_eq!(run(60, 0), Verdict::Holds);
+}
+
+#[test]
+#[ignore = "for measuring, in a release build"]
+fn a_grid_of_200() {
+    assert_eq!(run(200, 0), Verdict::Holds);
+}

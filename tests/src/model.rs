@@ -1,0 +1,327 @@
+//! Problems as explicit tables and trees, and how they are written in the problem language.
+
+use std::fmt::{self, Display, Formatter};
+
+/// The type of a state variable, with the number of its values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// `0..n-1`
+    Range(usize),
+    /// `bool`, false first
+    Bool,
+    /// `{v0, v1, ...}`
+    Enum(usize),
+}
+
+impl Kind {
+    /// Number of values.
+    #[must_use]
+    pub fn size(self) -> usize {
+        match self {
+            Kind::Range(n) | Kind::Enum(n) => n,
+            Kind::Bool => 2,
+        }
+    }
+
+    /// A value as written.
+    #[must_use]
+    pub fn value(self, value: usize) -> String {
+        match self {
+            Kind::Range(_) => value.to_string(),
+            Kind::Bool => (value == 1).to_string(),
+            Kind::Enum(_) => format!("v{value}"),
+        }
+    }
+}
+
+/// A clause for one state: these actions lead to these values of each variable, in all combinations. Values that
+/// are none of the variable's are printed, and lead nowhere.
+#[derive(Clone, Debug)]
+pub struct Rule {
+    /// The state.
+    pub from: usize,
+    /// The actions.
+    pub actions: Vec<usize>,
+    /// The choices for each variable; `None` where it is not mentioned.
+    pub choices: Vec<Option<Vec<usize>>>,
+}
+
+/// A system: states are numbered in mixed radix, the first variable counting most.
+#[derive(Clone, Debug)]
+pub struct System {
+    /// Names and types of the state variables.
+    pub vars: Vec<(&'static str, Kind)>,
+    /// Names of the actions.
+    pub actions: Vec<&'static str>,
+    /// The clauses.
+    pub rules: Vec<Rule>,
+    /// Initial states, if restricted.
+    pub init: Option<Vec<usize>>,
+    /// Labels `l0`, `l1`, ... by their states.
+    pub labels: Vec<Vec<usize>>,
+    /// Absorbing states.
+    pub absorb: Vec<usize>,
+    /// Whether `obs` sees the first variable only, or a label's states.
+    pub observe: Observe,
+}
+
+/// What an observer sees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Observe {
+    /// The first variable.
+    First,
+    /// Whether label `l0` holds.
+    Label,
+}
+
+/// An atom; paths, variables, labels and actions by number.
+#[derive(Clone, Debug)]
+pub enum Atom {
+    /// `l0[p]`
+    Label(usize, usize),
+    /// A variable has a value.
+    Is(usize, usize, usize),
+    /// `x[p] + k < x[q]`, of a range.
+    Less(usize, usize, usize, usize),
+    /// `x[p] == x[q]`
+    SameValue(usize, usize, usize),
+    /// `action[p] == a`
+    Took(usize, usize),
+    /// `action[p] == action[q]`
+    SameAction(usize, usize),
+    /// `state[p] == state[q]`
+    SameState(usize, usize),
+    /// `obs[p] == obs[q]`
+    SameObs(usize, usize),
+    /// `a in enabled[p]`
+    Enabled(usize, usize),
+}
+
+/// `[lo,hi]`; `None` only where the objective says `within`.
+pub type Interval = Option<(u32, u32)>;
+
+/// A formula.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub enum Formula {
+    Atom(Atom),
+    Not(Box<Formula>),
+    And(Vec<Formula>),
+    Or(Vec<Formula>),
+    Implies(Box<Formula>, Box<Formula>),
+    Iff(Box<Formula>, Box<Formula>),
+    Next(Box<Formula>),
+    WeakNext(Box<Formula>),
+    Finally(Interval, Box<Formula>),
+    Globally(Interval, Box<Formula>),
+    Until(Interval, Box<Formula>, Box<Formula>),
+    Release(Interval, Box<Formula>, Box<Formula>),
+    WeakUntil(Interval, Box<Formula>, Box<Formula>),
+}
+
+/// A system and an objective.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    /// The system of all paths.
+    pub system: System,
+    /// One entry a path variable, outermost first: whether it is `exists`.
+    pub exists: Vec<bool>,
+    /// `within K`.
+    pub within: Option<u32>,
+    /// How many steps the formula looks ahead at most, without `within`.
+    pub look: u32,
+    /// The formula.
+    pub formula: Formula,
+}
+
+/// Names of path variables.
+pub const PATHS: [&str; 3] = ["p", "q", "r"];
+
+impl System {
+    /// Number of states.
+    #[must_use]
+    pub fn states(&self) -> usize {
+        self.vars.iter().map(|(_, kind)| kind.size()).product()
+    }
+
+    /// The value of each variable in a state.
+    #[must_use]
+    pub fn values(&self, mut state: usize) -> Vec<usize> {
+        let mut values = Vec::new();
+        for (_, kind) in self.vars.iter().rev() {
+            values.push(state % kind.size());
+            state /= kind.size();
+        }
+        values.reverse();
+        values
+    }
+
+    /// The state with these values, if they are values of the variables.
+    #[must_use]
+    pub fn state(&self, values: &[usize]) -> Option<usize> {
+        self.vars.iter().zip(values).try_fold(0, |state, ((_, kind), &value)| {
+            (value < kind.size()).then_some(state * kind.size() + value)
+        })
+    }
+
+    /// All transitions `(from, action, to)`, sorted.
+    #[must_use]
+    pub fn edges(&self) -> Vec<(usize, usize, usize)> {
+        let mut edges = Vec::new();
+        for rule in self.rules.iter().filter(|r| !self.absorb.contains(&r.from)) {
+            let mut targets = vec![Vec::new()];
+            for (choices, here) in rule.choices.iter().zip(self.values(rule.from)) {
+                let choices = choices.clone().unwrap_or_else(|| vec![here]);
+                targets = targets
+                    .iter()
+                    .flat_map(|target| choices.iter().map(move |&c| [target.as_slice(), &[c]].concat()))
+                    .collect();
+            }
+            for to in targets.iter().filter_map(|values| self.state(values)) {
+                edges.extend(rule.actions.iter().map(|&a| (rule.from, a, to)));
+            }
+        }
+        edges.extend(self.absorb.iter().flat_map(|&s| (0..self.actions.len()).map(move |a| (s, a, s))));
+        edges.sort_unstable();
+        edges.dedup();
+        edges
+    }
+
+    fn is_state(&self, state: usize) -> String {
+        let equal = self.vars.iter().zip(self.values(state)).map(|((name, kind), value)| match kind {
+            Kind::Bool if value == 1 => (*name).to_string(),
+            Kind::Bool => format!("!{name}"),
+            _ => format!("{name} == {}", kind.value(value)),
+        });
+        equal.collect::<Vec<_>>().join(" & ")
+    }
+
+    fn is_one_of(&self, states: &[usize]) -> String {
+        if states.is_empty() {
+            return "false".into();
+        }
+        if let ([(name, Kind::Range(_))], true) = (self.vars.as_slice(), states.len() > 1) {
+            let values: Vec<String> = states.iter().map(usize::to_string).collect();
+            return format!("{name} in {{{}}}", values.join(", "));
+        }
+        states.iter().map(|&s| format!("({})", self.is_state(s))).collect::<Vec<_>>().join(" | ")
+    }
+}
+
+impl Display for System {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let vars = self.vars.iter().map(|(name, kind)| match kind {
+            Kind::Range(n) => format!("{name}: 0..{}", n - 1),
+            Kind::Bool => format!("{name}: bool"),
+            Kind::Enum(n) => {
+                format!("{name}: {{{}}}", (0..*n).map(|v| kind.value(v)).collect::<Vec<_>>().join(", "))
+            }
+        });
+        writeln!(f, "system M {{\n  state {};", vars.collect::<Vec<_>>().join(", "))?;
+        writeln!(f, "  action {};", self.actions.join(", "))?;
+        for rule in &self.rules {
+            let actions: Vec<&str> = rule.actions.iter().map(|&a| self.actions[a]).collect();
+            let actions = if actions.len() == self.actions.len() { "*".into() } else { actions.join(" | ") };
+            write!(f, "  on {actions} when {} {{", self.is_state(rule.from))?;
+            for ((name, kind), choices) in self.vars.iter().zip(&rule.choices) {
+                let values: Vec<String> = choices.iter().flatten().map(|&c| kind.value(c)).collect();
+                match values.as_slice() {
+                    [] => {}
+                    [one] => write!(f, " {name}' = {one};")?,
+                    _ => write!(f, " {name}' in {{{}}};", values.join(", "))?,
+                }
+            }
+            writeln!(f, " }}")?;
+        }
+        if let Some(init) = &self.init {
+            writeln!(f, "  init {};", self.is_one_of(init))?;
+        }
+        for (i, states) in self.labels.iter().enumerate() {
+            writeln!(f, "  label l{i} = {};", self.is_one_of(states))?;
+        }
+        if !self.absorb.is_empty() {
+            writeln!(f, "  absorb {};", self.is_one_of(&self.absorb))?;
+        }
+        let seen = if self.observe == Observe::First { self.vars[0].0 } else { "l0" };
+        writeln!(f, "  observe {seen};\n}}")
+    }
+}
+
+impl Display for Problem {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{}objective o", self.system)?;
+        if let Some(k) = self.within {
+            write!(f, " within {k}")?;
+        }
+        write!(f, " {{\n  ")?;
+        for (exists, name) in self.exists.iter().zip(PATHS) {
+            write!(f, "{} {name}. ", if *exists { "exists" } else { "forall" })?;
+        }
+        writeln!(f, "\n  {}\n}}", Shown(&self.formula, &self.system))
+    }
+}
+
+/// A formula with all its parentheses.
+struct Shown<'a>(&'a Formula, &'a System);
+
+impl Display for Shown<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Shown(formula, system) = *self;
+        let many = |gs: &[Formula], sign: &str| {
+            gs.iter().map(|g| Shown(g, system).to_string()).collect::<Vec<_>>().join(&format!(" {sign} "))
+        };
+        let at = |i: &Interval| match i {
+            None => String::new(),
+            Some((0, hi)) if hi % 2 == 0 => format!("[{hi}]"),
+            Some((lo, hi)) => format!("[{lo},{hi}]"),
+        };
+        match formula {
+            Formula::Atom(atom) => write!(f, "({})", atom.show(system)),
+            Formula::Not(a) => write!(f, "(!{})", Shown(a, system)),
+            Formula::And(gs) => write!(f, "({})", many(gs, "&")),
+            Formula::Or(gs) => write!(f, "({})", many(gs, "|")),
+            Formula::Implies(a, b) => write!(f, "({} -> {})", Shown(a, system), Shown(b, system)),
+            Formula::Iff(a, b) => write!(f, "({} <-> {})", Shown(a, system), Shown(b, system)),
+            Formula::Next(a) => write!(f, "(X {})", Shown(a, system)),
+            Formula::WeakNext(a) => write!(f, "(N {})", Shown(a, system)),
+            Formula::Finally(i, a) => write!(f, "(F{} {})", at(i), Shown(a, system)),
+            Formula::Globally(i, a) => write!(f, "(G{} {})", at(i), Shown(a, system)),
+            Formula::Until(i, a, b) => write!(f, "({} U{} {})", Shown(a, system), at(i), Shown(b, system)),
+            Formula::Release(i, a, b) => write!(f, "({} R{} {})", Shown(a, system), at(i), Shown(b, system)),
+            Formula::WeakUntil(i, a, b) => {
+                write!(f, "({} W{} {})", Shown(a, system), at(i), Shown(b, system))
+            }
+        }
+    }
+}
+
+impl Atom {
+    fn show(&self, system: &System) -> String {
+        let p = |i: &usize| PATHS[*i];
+        match self {
+            Atom::Label(i, l) => format!("l{l}[{}]", p(i)),
+            Atom::Is(i, v, value) => {
+                let (name, kind) = system.vars[*v];
+                match (kind, value) {
+                    (Kind::Bool, 1) => format!("{name}[{}]", p(i)),
+                    (Kind::Bool, _) => format!("!{name}[{}]", p(i)),
+                    _ => format!("{name}[{}] == {}", p(i), kind.value(*value)),
+                }
+            }
+            Atom::Less(i, k, j, v) => {
+                let name = system.vars[*v].0;
+                format!("{name}[{}] + {k} < {name}[{}]", p(i), p(j))
+            }
+            Atom::SameValue(i, j, v) => {
+                let (name, kind) = system.vars[*v];
+                let sign = if kind == Kind::Bool { "<->" } else { "==" };
+                format!("{name}[{}] {sign} {name}[{}]", p(i), p(j))
+            }
+            Atom::Took(i, a) => format!("action[{}] == {}", p(i), system.actions[*a]),
+            Atom::SameAction(i, j) => format!("action[{}] == action[{}]", p(i), p(j)),
+            Atom::SameState(i, j) => format!("state[{}] == state[{}]", p(i), p(j)),
+            Atom::SameObs(i, j) => format!("obs[{}] == obs[{}]", p(i), p(j)),
+            Atom::Enabled(i, a) => format!("{} in enabled[{}]", system.actions[*a], p(i)),
+        }
+    }
+}

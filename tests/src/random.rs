@@ -1,0 +1,253 @@
+//! Random problems.
+
+use crate::brute::Brute;
+use crate::model::{Atom, Formula, Interval, Kind, Observe, Problem, Rule, System};
+
+/// A reproducible source of numbers (SplitMix64).
+#[derive(Clone, Debug)]
+pub struct Random(u64);
+
+impl Random {
+    /// The same seed gives the same numbers.
+    #[must_use]
+    pub fn new(seed: u64) -> Self {
+        Random(seed)
+    }
+
+    /// A number below `n`, which must not be 0.
+    pub fn below(&mut self, n: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        usize::try_from((z ^ (z >> 31)) % n as u64).unwrap_or(0)
+    }
+
+    fn bound(&mut self, n: u32) -> u32 {
+        u32::try_from(self.below(n as usize)).unwrap_or(0)
+    }
+
+    /// True once in `n` times.
+    fn once_in(&mut self, n: usize) -> bool {
+        self.below(n) == 0
+    }
+
+    fn subset(&mut self, n: usize, once_in: usize) -> Vec<usize> {
+        (0..n).filter(|_| self.once_in(once_in)).collect()
+    }
+}
+
+/// Most tuples of paths that a problem may have.
+const MOST_TUPLES: usize = 60_000;
+
+/// A problem that brute force can decide.
+#[must_use]
+pub fn problem(random: &mut Random) -> Problem {
+    loop {
+        let candidate = attempt(random);
+        let count = Brute::new(&candidate, MOST_TUPLES).map(|b| b.paths.len());
+        // Problems without any path are decided by their quantifiers alone: a few are enough.
+        let tuples = count.and_then(|n| n.checked_pow(u32::try_from(candidate.exists.len()).ok()?));
+        match tuples {
+            Some(0) if random.once_in(10) => return candidate,
+            Some(1..=MOST_TUPLES) => return candidate,
+            _ => {}
+        }
+    }
+}
+
+fn attempt(random: &mut Random) -> Problem {
+    let system = system(random);
+    let paths = 1 + random.below(3);
+    let exists: Vec<bool> = (0..paths).map(|_| random.once_in(2)).collect();
+    let horizon = if paths == 3 { 1 + random.bound(3) } else { 1 + random.bound(4) };
+    let within = random.once_in(2).then(|| horizon - random.bound(2));
+    let depth = 2 + random.below(3);
+    let mut formulas = Formulas { random, system: &system, paths, within: within.is_some() };
+    let formula = formulas.formula(depth, horizon);
+    let formula = if paths > 1 && random.once_in(2) {
+        // Each path with a part of its own makes horizons unequal.
+        let mut parts = vec![formula];
+        for path in 0..paths {
+            let look = random.bound(horizon + 1);
+            let mut own =
+                Own { path, formulas: Formulas { random, system: &system, paths: 1, within: false } };
+            parts.push(own.formula(look));
+        }
+        if random.once_in(2) { Formula::And(parts) } else { Formula::Or(parts) }
+    } else {
+        formula
+    };
+    Problem { system, exists, within, look: horizon, formula }
+}
+
+fn system(random: &mut Random) -> System {
+    let vars = match random.below(5) {
+        0 | 1 => vec![("s", Kind::Range(2 + random.below(4)))],
+        2 => vec![("e", Kind::Enum(2 + random.below(3)))],
+        3 => vec![("x", Kind::Range(2)), ("b", Kind::Bool)],
+        _ => vec![("x", Kind::Range(2)), ("e", Kind::Enum(2))],
+    };
+    let actions = ["a", "b2", "c"][..1 + random.below(3)].to_vec();
+    let mut system = System {
+        vars,
+        actions,
+        rules: Vec::new(),
+        init: None,
+        labels: Vec::new(),
+        absorb: Vec::new(),
+        observe: Observe::First,
+    };
+    let states = system.states();
+    for from in 0..states {
+        // Some states have no rule: dead ends.
+        for _ in 0..[0, 1, 1, 2, 2, 3][random.below(6)] {
+            let rule = rule(random, &system, from);
+            system.rules.push(rule);
+        }
+    }
+    if !random.once_in(4) {
+        let mut init = random.subset(states, 2);
+        if init.is_empty() {
+            init.push(random.below(states));
+        }
+        system.init = Some(init);
+    }
+    system.labels = vec![random.subset(states, 2), random.subset(states, 3)];
+    if random.once_in(4) {
+        system.absorb = random.subset(states, 3);
+    }
+    if random.once_in(2) {
+        system.observe = Observe::Label;
+    }
+    system
+}
+
+fn rule(random: &mut Random, system: &System, from: usize) -> Rule {
+    let mut actions = random.subset(system.actions.len(), 2);
+    if actions.is_empty() {
+        actions.push(random.below(system.actions.len()));
+    }
+    let mut choices = Vec::new();
+    for (_, kind) in &system.vars {
+        if random.once_in(5) {
+            choices.push(None);
+            continue;
+        }
+        let mut values = vec![random.below(kind.size())];
+        if random.once_in(3) {
+            values.push(random.below(kind.size()));
+        }
+        // A value beyond the range makes no transition.
+        if matches!(kind, Kind::Range(_)) && random.once_in(8) {
+            values.push(kind.size());
+        }
+        if values.len() > 1 && random.once_in(6) {
+            values.remove(0);
+        }
+        choices.push(Some(values));
+    }
+    Rule { from, actions, choices }
+}
+
+struct Formulas<'a> {
+    random: &'a mut Random,
+    system: &'a System,
+    paths: usize,
+    within: bool,
+}
+
+impl Formulas<'_> {
+    fn formula(&mut self, depth: usize, look: u32) -> Formula {
+        if depth == 0 {
+            return Formula::Atom(self.atom());
+        }
+        let temporal = look > 0 || self.within;
+        let kind = self.random.below(if temporal { 18 } else { 6 });
+        match kind {
+            0 => Formula::Not(self.sub(depth, look)),
+            1 => Formula::And(self.subs(depth, look)),
+            2 => Formula::Or(self.subs(depth, look)),
+            3 => Formula::Implies(self.sub(depth, look), self.sub(depth, look)),
+            4 => Formula::Iff(self.sub(depth, look), self.sub(depth, look)),
+            5 => Formula::Atom(self.atom()),
+            6 | 7 => Formula::Next(self.sub(depth, look.saturating_sub(1))),
+            8 => Formula::WeakNext(self.sub(depth, look.saturating_sub(1))),
+            _ => self.operator(kind, depth, look),
+        }
+    }
+
+    fn operator(&mut self, kind: usize, depth: usize, look: u32) -> Formula {
+        let (interval, later) = self.interval(look);
+        match kind {
+            9 | 10 => Formula::Finally(interval, self.sub(depth, later)),
+            11 | 12 => Formula::Globally(interval, self.sub(depth, later)),
+            13 | 14 => Formula::Until(interval, self.sub(depth, later), self.sub(depth, later)),
+            15 | 16 => Formula::Release(interval, self.sub(depth, later), self.sub(depth, later)),
+            _ => Formula::WeakUntil(interval, self.sub(depth, later), self.sub(depth, later)),
+        }
+    }
+
+    fn sub(&mut self, depth: usize, look: u32) -> Box<Formula> {
+        Box::new(self.formula(depth - 1, look))
+    }
+
+    fn subs(&mut self, depth: usize, look: u32) -> Vec<Formula> {
+        (0..2 + self.random.below(2)).map(|_| self.formula(depth - 1, look)).collect()
+    }
+
+    /// An interval, and how far the operands may look. Under `within` bounds may lie beyond the trace.
+    fn interval(&mut self, look: u32) -> (Interval, u32) {
+        if self.within {
+            let lo = self.random.bound(3);
+            let interval = (!self.random.once_in(3)).then(|| (lo, lo + self.random.bound(4)));
+            return (interval, look);
+        }
+        let hi = self.random.bound(look + 1);
+        let lo = if self.random.once_in(2) { 0 } else { self.random.bound(hi + 1) };
+        (Some((lo, hi)), look - hi)
+    }
+
+    fn atom(&mut self) -> Atom {
+        let system = self.system;
+        let p = self.random.below(self.paths);
+        let q = if self.paths == 1 { p } else { (p + 1 + self.random.below(self.paths - 1)) % self.paths };
+        let action = self.random.below(system.actions.len());
+        let var = self.random.below(system.vars.len());
+        let kind = system.vars[var].1;
+        match self.random.below(if self.paths == 1 { 6 } else { 13 }) {
+            0 | 1 => Atom::Label(p, self.random.below(2)),
+            2 => Atom::Is(p, var, self.random.below(kind.size())),
+            3 | 4 => Atom::Took(p, action),
+            5 => Atom::Enabled(p, action),
+            6 if matches!(kind, Kind::Range(_)) => Atom::Less(p, self.random.below(2), q, var),
+            6 | 7 => Atom::SameValue(p, q, var),
+            8 | 9 => Atom::SameAction(p, q),
+            10 | 11 => Atom::SameState(p, q),
+            _ => Atom::SameObs(p, q),
+        }
+    }
+}
+
+/// A formula of one path only.
+struct Own<'a> {
+    path: usize,
+    formulas: Formulas<'a>,
+}
+
+impl Own<'_> {
+    fn formula(&mut self, look: u32) -> Formula {
+        let mut atom = self.formulas.atom();
+        match &mut atom {
+            Atom::Label(p, _) | Atom::Is(p, ..) | Atom::Took(p, _) | Atom::Enabled(p, _) => *p = self.path,
+            _ => {}
+        }
+        let atom = Box::new(Formula::Atom(atom));
+        let interval = Some((self.formulas.random.bound(look + 1), look));
+        if self.formulas.random.once_in(2) {
+            Formula::Finally(interval, atom)
+        } else {
+            Formula::Globally(interval, atom)
+        }
+    }
+}
