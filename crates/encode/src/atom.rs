@@ -1,11 +1,13 @@
 //! Atoms of an objective as terms over the paths.
 
+use crate::Encoder;
 use crate::eval::{eval, eval_in};
 use crate::explicit::ExplicitPath;
+use crate::graph::{Graph, StateIx};
 use crate::path::{Path, Shape};
 use crate::symbolic::{InState, SymbolicPath};
 use crate::unroll::AtomTerms;
-use crate::value::{Leaves, Val, merge, same, translate};
+use crate::value::{Leaves, Val, constant, merge, same, translate};
 use hyperplan_problem::{
     ActionId, Expr, FormulaId, Leaf, Node, Objective, PathId, PathLeaf, Problem, System, Value,
 };
@@ -179,13 +181,7 @@ impl AtTime<'_, '_> {
     fn by_state(&self, terms: &mut Terms, path: &ExplicitPath, of: PathId, expr: &Expr<PathLeaf>) -> Val {
         let system = self.atoms.system(of);
         let layer = &path.layers[self.time as usize];
-        let truth = is_truth(
-            &|_, leaf| match leaf {
-                Leaf::Var(v) => system.vars[v].ty == hyperplan_problem::Type::Bool,
-                Leaf::Label(_) => true,
-            },
-            expr,
-        );
+        let truth = is_truth(&|_, leaf| is_truth_leaf(system, leaf), expr);
         if truth {
             return Val::Bool(layer.any(terms, |s| eval_on(system, path, expr, s) != 0));
         }
@@ -224,4 +220,88 @@ impl Leaves<PathLeaf> for AtTime<'_, '_> {
 
 fn in_state(terms: &mut Terms, system: &System, path: &SymbolicPath, time: u32, leaf: Leaf) -> Val {
     InState { system, state: &path.states[time as usize] }.leaf(terms, &leaf)
+}
+
+/// The leaves of atoms where one path is on a given step of a run, the others as terms.
+pub(crate) struct OnRun<'b, 'a> {
+    pub(crate) atoms: &'b mut PathAtoms<'a>,
+    pub(crate) encoder: &'b Encoder<'b>,
+    /// The path on the run.
+    pub(crate) path: PathId,
+    pub(crate) graph: &'b Graph,
+    pub(crate) state: StateIx,
+    /// The action just taken; none at time 0.
+    pub(crate) action: Option<ActionId>,
+    pub(crate) time: u32,
+}
+
+impl OnRun<'_, '_> {
+    /// The other of two paths, where one is on the run.
+    fn other(&self, p: PathId, q: PathId) -> Option<PathId> {
+        match (p == self.path, q == self.path) {
+            (true, _) => Some(q),
+            (_, true) => Some(p),
+            _ => None,
+        }
+    }
+
+    /// Whether a path is read at this time at all; beyond its horizon no value matters.
+    fn is_read(&self, path: PathId) -> bool {
+        path == self.path || self.time <= self.encoder.horizon(path)
+    }
+
+    fn is_at(&self, path: PathId) -> Term {
+        match &self.atoms.path(path).shape {
+            Shape::Explicit(p) => p.layers[self.time as usize].is(self.state),
+            Shape::Symbolic(_) => unreachable!("all paths of a query are written alike"),
+        }
+    }
+}
+
+impl Leaves<PathLeaf> for OnRun<'_, '_> {
+    fn leaf(&mut self, terms: &mut Terms, leaf: &PathLeaf) -> Val {
+        let truth = |holds: bool| Val::Bool(if holds { Term::TRUE } else { Term::FALSE });
+        let unread = leaf.paths().into_iter().flatten().any(|p| !self.is_read(p));
+        match *leaf {
+            PathLeaf::State(p, state_leaf) if p == self.path || unread => {
+                let system = self.encoder.system(p);
+                let value = if unread {
+                    0
+                } else {
+                    eval_in(system, &Expr::Leaf(state_leaf), self.graph.row(self.state))
+                };
+                if is_truth_leaf(system, state_leaf) { truth(value != 0) } else { constant(value) }
+            }
+            _ if unread => truth(false),
+            PathLeaf::Took(p, action) if p == self.path => truth(self.action == Some(action)),
+            PathLeaf::Enabled(p, action) if p == self.path => truth(self.graph.enables(self.state, action)),
+            PathLeaf::SameAction(p, q) if self.other(p, q).is_some() => match (self.other(p, q), self.action)
+            {
+                (Some(other), Some(action)) if other != self.path => {
+                    Val::Bool(AtTime { atoms: self.atoms, time: self.time }.took(other, action))
+                }
+                _ => truth(true),
+            },
+            PathLeaf::SameState(p, q) if self.other(p, q).is_some() => match self.other(p, q) {
+                Some(other) if other != self.path => Val::Bool(self.is_at(other)),
+                _ => truth(true),
+            },
+            _ => AtTime { atoms: self.atoms, time: self.time }.leaf(terms, leaf),
+        }
+    }
+
+    fn whole(&mut self, terms: &mut Terms, expr: &Expr<PathLeaf>) -> Option<Val> {
+        let path = only_path(expr).filter(|&p| p != self.path && self.is_read(p))?;
+        match &self.atoms.path(path).shape {
+            Shape::Explicit(_) => AtTime { atoms: self.atoms, time: self.time }.whole(terms, expr),
+            Shape::Symbolic(_) => None,
+        }
+    }
+}
+
+fn is_truth_leaf(system: &System, leaf: Leaf) -> bool {
+    match leaf {
+        Leaf::Var(v) => system.vars[v].ty == hyperplan_problem::Type::Bool,
+        Leaf::Label(_) => true,
+    }
 }

@@ -7,6 +7,7 @@
 //! no part in a violation and is left out. What remains covers every violating path.
 
 use crate::eval::{eval, eval_in};
+use crate::goal::Goal;
 use crate::graph::{Graph, StateIx};
 use crate::inputs::{Inputs, Move, Start};
 use crate::reach::lasts;
@@ -15,16 +16,16 @@ use crate::symbolic::Moves;
 use crate::{Encoder, Error};
 use hyperplan_problem::{ActionId, Expr, FormulaId, Mode, Node, PathId, PathLeaf};
 
-/// The cases of a path whose violations have the formula at `want`. Outcomes are numbered as in the graph, or, where
+/// The cases of a path with which its player can reach the goal. Outcomes are numbered as in the graph, or, where
 /// paths are symbolic, by the system's moves.
 pub(crate) fn cases(
     encoder: &Encoder<'_>,
     graph: &Graph,
     path: PathId,
-    want: bool,
+    goal: &Goal,
     moves: Option<&Moves>,
 ) -> Result<Vec<Inputs<StateIx>>, Error> {
-    let mut search = Search::new(encoder, graph, path, want, moves);
+    let mut search = Search::new(encoder, graph, path, goal, moves);
     let root = search.root;
     for &state in &graph.initial {
         if !lasts(encoder.objective.mode, graph, state, 0) {
@@ -64,7 +65,7 @@ impl<'a> Search<'a> {
         encoder: &'a Encoder<'a>,
         graph: &'a Graph,
         path: PathId,
-        want: bool,
+        goal: &Goal,
         symbolic: Option<&'a Moves>,
     ) -> Self {
         let mut atoms = Vec::new();
@@ -77,7 +78,7 @@ impl<'a> Search<'a> {
             }
         }
         let bit = |id: FormulaId| known.binary_search_by_key(&id, |k| k.0).ok().map(|at| known[at].1);
-        let (residuals, root) = Residuals::new(&encoder.objective.formula, want, &bit);
+        let (residuals, root) = Residuals::new(&encoder.objective.formula, goal, &bit);
         let mut outcomes: Vec<(ActionId, u32)> = Vec::new();
         for &(action, number) in &graph.letters {
             match outcomes.iter_mut().find(|o| o.0 == action) {

@@ -117,6 +117,13 @@ impl Names<'_> {
         name
     }
 
+    /// `q.may2.at.3.4`: some run of q may be there and owe what the residual 2 stands for.
+    pub(crate) fn pair(&self, graph: &Graph, state: StateIx, residual: u32) -> String {
+        let state = self.state(graph, state);
+        let place = state.strip_prefix(&self.path).unwrap_or(&state);
+        format!("{}.may{residual}{place}", self.path)
+    }
+
     /// `p.up`, or `p.up/1` for the second outcome of `up`.
     fn letter(&self, graph: &Graph, letter: Letter) -> String {
         let (action, number) = graph.letters[letter as usize];
@@ -347,21 +354,30 @@ pub(crate) struct Instances {
 /// A layer, what follows it, and the step between.
 type Shared = (Rc<Layer>, Rc<Layer>, Rc<Step>);
 
+/// What an instance is built from.
+pub(crate) struct Building<'b, 'n> {
+    pub(crate) script: &'b mut Script,
+    /// Names of its symbols; fresh for each instance.
+    pub(crate) names: &'b Names<'n>,
+    pub(crate) graph: &'b Rc<Graph>,
+    /// What can matter of the path.
+    pub(crate) layers: &'b Layers,
+    /// The paths that the inputs may refer to.
+    pub(crate) env: &'b [Option<&'b ExplicitPath>],
+}
+
 impl Instances {
-    /// The path that starts and moves as `inputs` say, and the condition that it is a path through `layers`.
-    /// `env` gives the paths that the inputs refer to.
+    /// The path that starts and moves as `inputs` say, and the condition that it is a path through the layers.
     pub(crate) fn build(
         &mut self,
-        terms: &mut Terms,
-        graph: &Rc<Graph>,
-        layers: &Layers,
+        building: &mut Building<'_, '_>,
         inputs: &Inputs<StateIx>,
-        env: &[Option<&ExplicitPath>],
     ) -> (ExplicitPath, Term) {
+        let graph = building.graph;
         let first = match inputs.start {
-            Start::Same(other) => at(env, other).layers[0].clone(),
-            Start::State(state) => only_start(env, graph, state).unwrap_or_else(|| {
-                let possible = layers.contains(0, state);
+            Start::Same(other) => at(building.env, other).layers[0].clone(),
+            Start::State(state) => only_start(building.env, graph, state).unwrap_or_else(|| {
+                let possible = building.layers.contains(0, state);
                 let (states, terms) =
                     if possible { (vec![state], vec![Term::TRUE]) } else { (vec![], vec![]) };
                 Rc::new(Layer { states, terms })
@@ -370,78 +386,107 @@ impl Instances {
         let mut path = ExplicitPath { graph: graph.clone(), layers: vec![first], steps: Vec::new() };
         for (time, &movement) in inputs.moves.iter().enumerate() {
             let here = path.layers[time].clone();
-            let (next, step) = self.step(terms, graph, layers, &here, movement, time, env);
-            path.layers.push(next);
-            path.steps.push(step);
+            let key = (Rc::as_ptr(&here) as usize, movement, time);
+            let shared = self.next.entry(key).or_insert_with(|| {
+                let (next, step) = building.step(&here, movement, time);
+                (here, next, step)
+            });
+            path.layers.push(shared.1.clone());
+            path.steps.push(shared.2.clone());
         }
         let arrived: Vec<Term> = path.layers.last().map_or(Vec::new(), |l| l.terms.clone());
-        let guard = terms.or(&arrived);
+        let guard = building.script.terms.or(&arrived);
         (path, guard)
     }
+}
 
-    #[allow(clippy::too_many_arguments)]
-    fn step(
-        &mut self,
-        terms: &mut Terms,
-        graph: &Graph,
-        layers: &Layers,
-        here: &Rc<Layer>,
-        movement: Move,
-        time: usize,
-        env: &[Option<&ExplicitPath>],
-    ) -> (Rc<Layer>, Rc<Step>) {
-        let key = (Rc::as_ptr(here) as usize, movement, time);
-        if let Some((_, next, step)) = self.next.get(&key) {
-            return (next.clone(), step.clone());
-        }
-        let (next, step) = match movement {
+impl Building<'_, '_> {
+    fn step(&mut self, here: &Rc<Layer>, movement: Move, time: usize) -> (Rc<Layer>, Rc<Step>) {
+        let graph = self.graph;
+        match movement {
             Move::Same(other) => {
-                let other = at(env, other);
+                let other = at(self.env, other);
                 let step = other.steps[time].clone();
                 if Rc::ptr_eq(here, &other.layers[time]) {
                     // The same state and the same letter: the same path up to here and one step on.
-                    (other.layers[time + 1].clone(), step)
-                } else {
-                    let next =
-                        self.follow(terms, here, &step.letters, layers, time, |s, l| graph.successor(s, l));
-                    (next, step)
+                    return (other.layers[time + 1].clone(), step);
                 }
+                (self.follow(here, &step.letters, time, |s, l| graph.successor(s, l)), step)
             }
             Move::SameAction(other, number) => {
-                let step = &at(env, other).steps[time];
-                let next =
-                    self.follow(terms, here, &step.actions, layers, time, |s, a| graph.outcome(s, a, number));
-                (next, Rc::new(Step { letters: Vec::new(), actions: step.actions.clone() }))
+                let actions = at(self.env, other).steps[time].actions.clone();
+                let next = self.follow(here, &actions, time, |s, a| graph.outcome(s, a, number));
+                (next, Rc::new(Step { letters: Vec::new(), actions }))
             }
             Move::Act(action, number) => {
                 let actions = vec![(action, Term::TRUE)];
-                let next =
-                    self.follow(terms, here, &actions, layers, time, |s, a| graph.outcome(s, a, number));
+                let next = self.follow(here, &actions, time, |s, a| graph.outcome(s, a, number));
                 (next, Rc::new(Step { letters: Vec::new(), actions }))
             }
-        };
-        self.next.insert(key, (here.clone(), next.clone(), step.clone()));
-        (next, step)
+        }
     }
 
-    fn follow<T: Copy>(
-        &self,
-        terms: &mut Terms,
+    /// The layer after a step. At most one of the choices is true, and at most one of the states, so clauses in both
+    /// directions define a symbol for each next state; where there is one way to get there, no symbol is needed.
+    fn follow<T: Copy + PartialEq>(
+        &mut self,
         here: &Layer,
         choices: &[(T, Term)],
-        layers: &Layers,
         time: usize,
         successor: impl Fn(StateIx, T) -> Option<StateIx>,
     ) -> Rc<Layer> {
-        let mut next = Vec::new();
+        let mut ways: Vec<(StateIx, usize, Term)> = Vec::new();
         for (&state, &when) in here.states.iter().zip(&here.terms) {
-            for &(choice, term) in choices {
-                if let Some(to) = successor(state, choice).filter(|&to| layers.contains(time + 1, to)) {
-                    next.push((to, terms.and2(when, term)));
-                }
+            for (at, &(choice, _)) in choices.iter().enumerate() {
+                let to = successor(state, choice).filter(|&to| self.layers.contains(time + 1, to));
+                ways.extend(to.map(|to| (to, at, when)));
             }
         }
-        Rc::new(gather(terms, next))
+        ways.sort_unstable();
+        let terms: Vec<Term> = choices.iter().map(|c| c.1).collect();
+        let certain = terms == [Term::TRUE];
+        let mut layer = Layer { states: Vec::new(), terms: Vec::new() };
+        for to in ways.chunk_by(|a, b| a.0 == b.0) {
+            let term = match to {
+                [(_, at, when)] if certain || *when == Term::TRUE => {
+                    if certain {
+                        *when
+                    } else {
+                        terms[*at]
+                    }
+                }
+                _ if certain => {
+                    let when: Vec<Term> = to.iter().map(|way| way.2).collect();
+                    self.script.terms.or(&when)
+                }
+                _ => self.define(to, &terms, time + 1),
+            };
+            layer.states.push(to[0].0);
+            layer.terms.push(term);
+        }
+        Rc::new(layer)
+    }
+
+    /// A symbol that is true exactly if one of the ways is gone: for each choice, from one of its states.
+    fn define(&mut self, ways: &[(StateIx, usize, Term)], choices: &[Term], time: usize) -> Term {
+        let stem = self.script.terms.stem(&self.names.state(self.graph, ways[0].0));
+        let there = self.script.terms.symbol(stem, Some(time as u32), Sort::Bool);
+        let mut clause = Vec::new();
+        for (at, &choice) in choices.iter().enumerate() {
+            clause.clear();
+            clause.extend([!there, !choice]);
+            for way in ways.iter().filter(|way| way.1 == at) {
+                self.script.clause(&[!way.2, !choice, there]);
+                clause.push(way.2);
+            }
+            self.script.clause(&clause);
+        }
+        // Another system's path may do what this system cannot.
+        clause.clear();
+        clause.push(!there);
+        clause.extend_from_slice(choices);
+        self.script.clause(&clause);
+        there
     }
 }
 

@@ -12,6 +12,7 @@ mod eval;
 mod expand;
 mod explicit;
 mod generalize;
+mod goal;
 mod graph;
 mod inputs;
 mod inspect;
@@ -20,6 +21,7 @@ mod query;
 mod reach;
 mod realize;
 mod residual;
+mod sweep;
 mod symbolic;
 #[cfg(test)]
 mod tests;
@@ -27,6 +29,7 @@ mod unroll;
 mod value;
 
 pub use explicit::FixedPath;
+pub use goal::Goal;
 pub use graph::{Graph, LIVE, Letter, StateIx};
 pub use inputs::{Inputs, Move, Start};
 pub use inspect::{Findings, inspect};
@@ -62,6 +65,8 @@ pub struct Limits {
     pub states: usize,
     /// States that can matter, added up over time (with what is left of the formula), of one path.
     pub layer_states: usize,
+    /// Joint states of two paths, added up likewise, beyond which they are explored one by one.
+    pub pairs: usize,
     /// Residuals of the formula beyond which pruning forgets it.
     pub residuals: usize,
     /// Cases of one universally quantified path.
@@ -74,6 +79,7 @@ impl Default for Limits {
             horizon: 100_000,
             states: 2_000_000,
             layer_states: 50_000_000,
+            pairs: 3_000_000,
             residuals: 20_000,
             cases: 4096,
         }
@@ -249,17 +255,17 @@ impl<'a> Encoder<'a> {
         path::known(self, trace)
     }
 
-    /// The finitely many instances that together cover every choice of a path for which the formula can get the
-    /// value `want`.
+    /// The finitely many instances that together cover every choice of a path with which its player can
+    /// reach the goal.
     ///
     /// # Errors
     /// [`Error::TooManyCases`] beyond the limit; [`Error::NotEnumerable`] where states were not enumerated.
-    pub fn cases(&self, path: PathId, want: bool) -> Result<Vec<Instance>, Error> {
+    pub fn cases(&self, path: PathId, goal: &Goal) -> Result<Vec<Instance>, Error> {
         let graph = self
             .graph(path)
             .ok_or_else(|| Error::NotEnumerable { system: self.system(path).name.clone() })?;
         let symbolic = self.model(path).moves.as_deref();
-        let cases = expand::cases(self, graph, path, want, symbolic)?;
+        let cases = expand::cases(self, graph, path, goal, symbolic)?;
         let instance = |inputs: Inputs<StateIx>| match symbolic {
             None => Instance::Explicit(inputs),
             Some(_) => Instance::Symbolic(Inputs {

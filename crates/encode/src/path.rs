@@ -3,7 +3,7 @@
 use crate::eval::{code, decode};
 use crate::explicit::{ExplicitPath, FixedPath};
 use crate::graph::StateIx;
-use crate::inputs::Inputs;
+use crate::inputs::{Inputs, Move, Start};
 use crate::symbolic::{FixedRows, Moves, SymbolicPath};
 use crate::{Encoder, Row, States};
 use hyperplan_problem::{PathId, State, System, Trace};
@@ -66,6 +66,18 @@ impl Known {
                 Trace { path, states: p.rows.iter().map(state).collect(), actions: p.actions.clone() }
             }
         }
+    }
+}
+
+impl Instance {
+    /// Whether it refers to no other path.
+    #[must_use]
+    pub fn is_absolute(&self) -> bool {
+        let (start, moves) = match self {
+            Instance::Explicit(inputs) => (matches!(inputs.start, Start::State(_)), &inputs.moves),
+            Instance::Symbolic(inputs) => (matches!(inputs.start, Start::State(_)), &inputs.moves),
+        };
+        start && moves.iter().all(|m| matches!(m, Move::Act(..)))
     }
 }
 

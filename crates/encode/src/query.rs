@@ -1,10 +1,12 @@
 //! One script under construction, and the table that leads back from its values to paths.
 
 use crate::atom::PathAtoms;
-use crate::explicit::{ExplicitPath, FixedPath, Instances, Names};
+use crate::explicit::{Building, ExplicitPath, FixedPath, Instances, Names};
+use crate::goal::Goal;
 use crate::inputs::{Move, Start};
 use crate::path::{Instance, Known, Path, Shape};
 use crate::reach::{Layers, Question, layers};
+use crate::sweep::{Sweep, sweep};
 use crate::symbolic::{Builder, SymbolicPath};
 use crate::unroll::Unroller;
 use crate::{Encoder, Error, Graph, States};
@@ -23,7 +25,11 @@ pub struct Query<'e, 'a> {
     pub script: Script,
     /// Paths that are constants throughout, for pruning.
     fixed: Vec<Option<FixedPath>>,
-    layers: FxHashMap<(PathId, bool), Rc<Layers>>,
+    layers: FxHashMap<(PathId, Goal), Rc<Layers>>,
+    /// What can matter of the first copy of each declared path.
+    declared: FxHashMap<PathId, Rc<Layers>>,
+    /// See [`Query::with_slack`].
+    slack: Option<u32>,
     instances: Instances,
     /// How many copies of each path variable there are, for names.
     copies: FxHashMap<PathId, u32>,
@@ -53,9 +59,24 @@ impl<'e, 'a> Query<'e, 'a> {
             script: Script::new(),
             fixed,
             layers: FxHashMap::default(),
+            declared: FxHashMap::default(),
+            slack: None,
             instances: Instances::default(),
             copies: FxHashMap::default(),
         }
+    }
+
+    /// Keeps of each path declared only the runs that owe nothing more at most so many steps after the earliest one
+    /// does. What is found is right; that nothing is found says nothing.
+    #[must_use]
+    pub fn with_slack(mut self, slack: Option<u32>) -> Self {
+        self.slack = slack;
+        self
+    }
+
+    /// Lifts [`Query::with_slack`] for the paths to come.
+    pub fn lift_slack(&mut self) {
+        self.slack = None;
     }
 
     /// An environment without paths.
@@ -71,24 +92,49 @@ impl<'e, 'a> Query<'e, 'a> {
         names(self.encoder, path, number)
     }
 
-    /// What can matter of a path for the formula to have the value `want`.
-    fn layers(&mut self, path: PathId, want: bool) -> Result<Rc<Layers>, Error> {
-        if let Some(known) = self.layers.get(&(path, want)) {
+    /// What can matter of a path for its player to reach the goal. A path whose actions or states the formula
+    /// compares with those of a path that has been declared is explored together with that one, where the budget
+    /// allows.
+    fn layers(&mut self, path: PathId, goal: &Goal) -> Result<Rc<Layers>, Error> {
+        let key = (path, goal.clone());
+        if let Some(known) = self.layers.get(&key) {
             return Ok(known.clone());
         }
-        let encoder = self.encoder;
-        let question = Question {
-            problem: encoder.problem,
-            objective: encoder.objective,
-            graph: explicit_graph(encoder, path),
-            path,
-            horizon: encoder.horizon(path),
-            want,
-            fixed: &self.fixed,
-        };
-        let found = Rc::new(layers(&question, &encoder.limits)?);
-        self.layers.insert((path, want), found.clone());
+        let alone = self.explore(path, goal, &self.fixed)?;
+        let found = Rc::new(self.explore_beside(path, goal, &alone).unwrap_or(alone));
+        self.layers.insert(key, found.clone());
         Ok(found)
+    }
+
+    fn explore(&self, path: PathId, goal: &Goal, fixed: &[Option<FixedPath>]) -> Result<Layers, Error> {
+        let [found] = layers(&Question {
+            encoder: self.encoder,
+            paths: [path],
+            within: [None],
+            goal,
+            fixed,
+            slack: self.slack,
+            budget: self.encoder.limits.layer_states,
+        })?;
+        Ok(found)
+    }
+
+    /// `None` where there is no such other path, or too many pairs.
+    fn explore_beside(&self, path: PathId, goal: &Goal, alone: &Layers) -> Option<Layers> {
+        let encoder = self.encoder;
+        let partners = encoder.tied_before(path).into_iter().chain(encoder.compared_before(path));
+        let (other, beside) = partners.into_iter().find_map(|p| Some((p, self.declared.get(&p)?)))?;
+        let [_, found] = layers(&Question {
+            encoder,
+            paths: [other, path],
+            within: [Some(beside), Some(alone)],
+            goal,
+            fixed: &self.fixed,
+            slack: None,
+            budget: encoder.limits.pairs,
+        })
+        .ok()?;
+        Some(found)
     }
 
     fn builder<'n>(&self, path: PathId, names: &'n Names<'a>) -> Builder<'n>
@@ -108,15 +154,16 @@ impl<'e, 'a> Query<'e, 'a> {
         Rc::new(Path { shape, moves: self.encoder.model(path).moves.clone() })
     }
 
-    /// A path that the solver chooses, for a formula that is to have the value `want`.
+    /// A path that the solver chooses to reach a goal.
     ///
     /// # Errors
     /// [`Error::TooLarge`] where too much can matter.
-    pub fn declare(&mut self, path: PathId, want: bool) -> Result<Rc<Path>, Error> {
+    pub fn declare(&mut self, path: PathId, goal: &Goal) -> Result<Rc<Path>, Error> {
         let names = self.names(path);
         let shape = match self.encoder.states {
             States::Onehot => {
-                let layers = self.layers(path, want)?;
+                let layers = self.layers(path, goal)?;
+                self.declared.entry(path).or_insert_with(|| layers.clone());
                 let graph = explicit_graph(self.encoder, path);
                 Shape::Explicit(ExplicitPath::declare(&mut self.script, &names, graph, &layers))
             }
@@ -132,11 +179,11 @@ impl<'e, 'a> Query<'e, 'a> {
     ///
     /// # Errors
     /// [`Error::TooLarge`] where too much can matter.
-    pub fn bind(&mut self, path: PathId, want: bool) -> Result<(Rc<Path>, Vec<Term>, Term), Error> {
+    pub fn bind(&mut self, path: PathId, goal: &Goal) -> Result<(Rc<Path>, Vec<Term>, Term), Error> {
         let names = self.names(path);
         let (shape, bound, guard) = match self.encoder.states {
             States::Onehot => {
-                let layers = self.layers(path, want)?;
+                let layers = self.layers(path, goal)?;
                 let graph = explicit_graph(self.encoder, path);
                 let (path, bound, guard) = ExplicitPath::bind(&mut self.script.terms, &names, graph, &layers);
                 (Shape::Explicit(path), bound, guard)
@@ -163,7 +210,7 @@ impl<'e, 'a> Query<'e, 'a> {
         self.path(path, shape)
     }
 
-    /// An instance of a path whose player wants the formula at `want`: the path, and the condition that it is one.
+    /// An instance of a path whose player has the goal: the path, and the condition that it is one.
     ///
     /// # Errors
     /// [`Error::TooLarge`] where too much can matter.
@@ -172,16 +219,18 @@ impl<'e, 'a> Query<'e, 'a> {
         path: PathId,
         instance: &Instance,
         env: &Env,
-        want: bool,
+        goal: &Goal,
     ) -> Result<(Rc<Path>, Term), Error> {
         let (shape, guard) = match instance {
             Instance::Explicit(inputs) => {
-                let layers = self.layers(path, want)?;
+                let layers = self.layers(path, goal)?;
                 let graph = explicit_graph(self.encoder, path);
                 let others: Vec<Option<&ExplicitPath>> =
                     env.iter().map(|p| p.as_deref().and_then(explicit)).collect();
-                let terms = &mut self.script.terms;
-                let (path, guard) = self.instances.build(terms, graph, &layers, inputs, &others);
+                let names = self.names(path);
+                let script = &mut self.script;
+                let mut building = Building { script, names: &names, graph, layers: &layers, env: &others };
+                let (path, guard) = self.instances.build(&mut building, inputs);
                 (Shape::Explicit(path), guard)
             }
             Instance::Symbolic(inputs) => {
@@ -194,6 +243,36 @@ impl<'e, 'a> Query<'e, 'a> {
             }
         };
         Ok((self.path(path, shape), guard))
+    }
+
+    /// Demands of a declared path what the goal asks of it next to a known one: states from which it cannot be met
+    /// are excluded at once. The solver would find out, but by search.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] where too much can matter.
+    pub fn restrict(
+        &mut self,
+        path: PathId,
+        terms: &Path,
+        goal: &Goal,
+        beside: &[(PathId, Known)],
+    ) -> Result<(), Error> {
+        let Shape::Explicit(explicit) = &terms.shape else { return Ok(()) };
+        let mut fixed = self.fixed.clone();
+        for (other, known) in beside {
+            if let Known::Explicit(known) = known {
+                fixed[usize::from(*other)] = Some(known.clone());
+            }
+        }
+        let layers = self.explore(path, goal, &fixed)?;
+        for (time, layer) in explicit.layers.iter().enumerate() {
+            for (&state, &term) in layer.states.iter().zip(&layer.terms) {
+                if !layers.contains(time, state) {
+                    self.script.assert(!term);
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Whether a declared path is like a counterexample: starts like it and takes the actions that the instance
@@ -229,12 +308,29 @@ impl<'e, 'a> Query<'e, 'a> {
         script_terms.and(&parts)
     }
 
-    /// The formula over these paths, which must be all that it reads.
-    pub fn formula(&mut self, env: &Env) -> Term {
+    /// Demands that no choice of a path, the last of all, reaches its player's goal, whatever it is; `env` has the
+    /// paths before it. False, with nothing of use demanded, where that takes too much or states are not enumerated.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] where too much can matter.
+    pub fn sweep(&mut self, path: PathId, env: &Env, goal: &Goal) -> Result<bool, Error> {
+        if self.encoder.states != States::Onehot {
+            return Ok(false);
+        }
+        let names = self.names(path);
+        let layers = self.layers(path, goal)?;
+        let graph = explicit_graph(self.encoder, path);
+        let question =
+            Sweep { encoder: self.encoder, graph, names: &names, path, layers: &layers, goal, env };
+        Ok(sweep(&question, &mut self.script).is_some())
+    }
+
+    /// A goal over these paths, which must be all that it reads.
+    pub fn goal(&mut self, env: &Env, goal: &Goal) -> Term {
         let encoder = self.encoder;
         let atoms = PathAtoms::new(encoder.problem, encoder.objective, env);
         let mut unroller = Unroller::new(&encoder.objective.formula, encoder.objective.mode, atoms);
-        unroller.root(&mut self.script.terms)
+        unroller.goal(&mut self.script.terms, goal)
     }
 
     /// The path that a model describes; `None` if it is none, which a right model cannot cause.

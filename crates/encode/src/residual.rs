@@ -4,6 +4,7 @@
 //! which weakens the formula. A path along which the weakened formula becomes `false` can therefore satisfy the
 //! formula together with no choice of the other paths. [`crate::reach`] uses this to prune.
 
+use crate::goal::Goal;
 use hyperplan_problem::{Formula, FormulaId, Interval, Node, TemporalOp};
 use rustc_hash::FxHashMap;
 use typed_index_collections::TiVec;
@@ -54,26 +55,29 @@ pub(crate) struct Residuals {
     shapes: Vec<Shape>,
     index: FxHashMap<Shape, Residual>,
     steps: FxHashMap<(Residual, Now), Residual>,
+    reads: FxHashMap<Residual, u64>,
 }
 
 impl Residuals {
-    /// The weakened formula, or its negation where `want` is false. `bit` numbers the known atoms.
+    /// The weakened goal. `bit` numbers the known atoms.
     pub(crate) fn new(
         formula: &Formula,
-        want: bool,
+        goal: &Goal,
         bit: &dyn Fn(FormulaId) -> Option<u8>,
     ) -> (Residuals, Residual) {
         let mut all = Residuals {
             shapes: vec![Shape::True, Shape::False],
             index: FxHashMap::default(),
             steps: FxHashMap::default(),
+            reads: FxHashMap::default(),
         };
         let mut both: TiVec<FormulaId, [Residual; 2]> = TiVec::new();
         for (id, node) in formula.nodes.iter_enumerated() {
             let pair = [false, true].map(|want| all.convert(id, node, want, &both, bit));
             both.push(pair);
         }
-        let root = both[formula.root()][usize::from(want)];
+        let parts = goal.parts.iter().map(|&(id, want)| both[id][usize::from(want)]).collect();
+        let root = all.join(goal.all, parts);
         (all, root)
     }
 
@@ -187,6 +191,26 @@ impl Residuals {
             _ if and => self.intern(Shape::And(flat.into())),
             _ => self.intern(Shape::Or(flat.into())),
         }
+    }
+
+    /// The atoms that a residual reads, now or later, one bit each.
+    pub(crate) fn looks_at(&mut self, residual: Residual) -> u64 {
+        if let Some(&known) = self.reads.get(&residual) {
+            return known;
+        }
+        let parts: Vec<Residual> = match &self.shapes[residual as usize] {
+            Shape::True | Shape::False | Shape::Literal { .. } => Vec::new(),
+            Shape::And(parts) | Shape::Or(parts) => parts.to_vec(),
+            Shape::Next { then, .. } => vec![*then],
+            Shape::Until(_, left, right) | Shape::Release(_, left, right) => vec![*left, *right],
+        };
+        let own = match self.shapes[residual as usize] {
+            Shape::Literal { bit, .. } => 1 << bit,
+            _ => 0,
+        };
+        let reads = parts.into_iter().fold(own, |all, part| all | self.looks_at(part));
+        self.reads.insert(residual, reads);
+        reads
     }
 
     /// What is left for the next position once the atoms have these values now; at the last position of a finite

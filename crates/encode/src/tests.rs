@@ -1,3 +1,4 @@
+use crate::goal::Goal;
 use crate::unroll::{AtomTerms, Unroller};
 use hyperplan_problem::{Expr, Formula, FormulaId, Interval, Mode, Node, TemporalOp};
 use hyperplan_smt::{Sort, Term, Terms};
@@ -26,7 +27,8 @@ fn size(build: &dyn Fn(&mut Formula, Interval) -> FormulaId, horizon: u32, mode:
     let inner = build(&mut formula, window);
     formula.push(Node::Globally(window, inner), SPAN);
     let mut terms = Terms::new();
-    Unroller::new(&formula, mode, Free).root(&mut terms);
+    let goal = Goal::new(&formula, true);
+    Unroller::new(&formula, mode, Free).goal(&mut terms, &goal);
     terms.len()
 }
 
@@ -48,10 +50,13 @@ fn every_operator_unrolls_to_linearly_many_terms() {
     let operators: Vec<(&str, Build)> = vec![
         ("F", unary(Node::Finally)),
         ("G", unary(Node::Globally)),
-        ("X", Box::new(|f, _| {
-            let a = atom(f);
-            f.push(Node::Next(a), SPAN)
-        })),
+        (
+            "X",
+            Box::new(|f, _| {
+                let a = atom(f);
+                f.push(Node::Next(a), SPAN)
+            }),
+        ),
         ("U", binary(TemporalOp::Until, 0)),
         ("U[7,_]", binary(TemporalOp::Until, 7)),
         ("R", binary(TemporalOp::Release, 0)),

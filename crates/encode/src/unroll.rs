@@ -6,6 +6,7 @@
 //!
 //! `R`, `F` and `G` are `U` through duality: negation of a term costs nothing.
 
+use crate::goal::Goal;
 use hyperplan_problem::{Formula, FormulaId, Interval, Mode, Node, TemporalOp};
 use hyperplan_smt::{Term, Terms};
 use rustc_hash::FxHashMap;
@@ -59,9 +60,11 @@ impl<'a, A: AtomTerms> Unroller<'a, A> {
         Unroller { formula, mode, atoms, memo: FxHashMap::default(), windows: FxHashMap::default() }
     }
 
-    /// The formula at time 0.
-    pub(crate) fn root(&mut self, terms: &mut Terms) -> Term {
-        self.at(terms, self.formula.root(), 0)
+    /// A goal, at time 0.
+    pub(crate) fn goal(&mut self, terms: &mut Terms, goal: &Goal) -> Term {
+        let parts: Vec<Term> =
+            goal.parts.iter().map(|&(id, want)| self.at(terms, id, 0).negate_if(!want)).collect();
+        if goal.all { terms.and(&parts) } else { terms.or(&parts) }
     }
 
     /// The last position, where there is one.

@@ -137,10 +137,7 @@ impl LatestReads {
 fn reads(expr: &Expr<PathLeaf>, path: PathId) -> bool {
     let mut found = false;
     expr.for_each_leaf(&mut |leaf| {
-        found |= match *leaf {
-            PathLeaf::State(p, _) | PathLeaf::Took(p, _) | PathLeaf::Enabled(p, _) => p == path,
-            PathLeaf::SameAction(p, q) | PathLeaf::SameState(p, q) => p == path || q == path,
-        }
+        found |= leaf.paths().contains(&Some(path));
     });
     found
 }

@@ -19,7 +19,8 @@ fn case_studies(criterion: &mut Criterion) {
             let problem = load(&format!("{objective}-{size}"));
             group.bench_with_input(BenchmarkId::from_parameter(size), &problem, |bencher, problem| {
                 bencher.iter(|| {
-                    let outcome = solve(problem, &problem.objectives[0], &config()).expect("it can be solved");
+                    let outcome =
+                        solve(problem, &problem.objectives[0], &config()).expect("it can be solved");
                     assert_eq!(outcome.verdict, Verdict::Realizable);
                     black_box(outcome)
                 });

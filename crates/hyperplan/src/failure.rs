@@ -3,7 +3,7 @@
 use std::fmt;
 use std::process::ExitCode;
 
-/// Exit statuses, as `design` of the command line has them; the largest of several counts.
+/// Exit statuses, as the README lists them; the largest of several counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Status {
     /// Realizable, or the property holds, or the command did what it was to do.

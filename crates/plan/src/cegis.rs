@@ -1,7 +1,8 @@
 //! Counterexample-guided search over any quantifier prefix.
 //!
-//! The player of a block of paths (the one who wants the formula at a given truth value) looks for paths of its own
-//! block that win against the *instances* found so far. Whether a candidate really wins is asked of the other
+//! The player of a block of paths has a goal (that the formula, or what is left of it, has a given truth value) and
+//! looks for paths of its own block that win against the *instances* found so far. What the goal asks of the block
+//! alone is demanded at once. Whether a candidate really wins is asked of the other
 //! player, recursively, with the candidate fixed. A counterexample becomes an instance: the other player's block
 //! defined by inputs in terms of the paths before it, the condition that it is a path as a guard, and fresh copies
 //! of the player's own next block. The copies may again leave a block of the other player open; such an instance is
@@ -12,7 +13,7 @@
 //! finitely many, and the search ends.
 
 use crate::oracle::{Dialogue, Oracle, Stop};
-use hyperplan_encode::{Encoder, Env, Instance, Known, Query};
+use hyperplan_encode::{Encoder, Env, Goal, Instance, Known, Query};
 use hyperplan_problem::PathId;
 use hyperplan_smt::{Model, Term};
 
@@ -29,6 +30,8 @@ pub(crate) struct Cegis<'s, 'a, 'c> {
     pub(crate) blocks: &'s [Vec<PathId>],
     /// Rounds of the outermost search.
     pub(crate) rounds: u32,
+    /// For the leading block, see [`Query::with_slack`].
+    pub(crate) slack: Option<u32>,
 }
 
 /// An instance of the formula up to a block of the other player.
@@ -56,22 +59,25 @@ struct Round<'e, 'a> {
     /// The block itself, over the paths known.
     first: Game,
     games: Vec<Game>,
-    want: bool,
+    /// What the player wants beyond what its block alone was asked for.
+    goal: Goal,
+    /// What the other player wants.
+    against: Goal,
 }
 
 impl<'s, 'a> Cegis<'s, 'a, '_> {
-    /// Paths of the block at `level` with which the formula gets the value `want` whatever the later blocks of the
-    /// other player are; up to `many` different answers where no block follows, else at most one. Empty: none.
+    /// Paths of the block at `level` with which its player reaches the goal whatever the later blocks of the other
+    /// player are; up to `many` different answers where no block follows, else at most one. Empty: none.
     /// Each answer has the paths known and those of the block.
     pub(crate) fn find(
         &mut self,
         level: usize,
         known: &Assignment,
-        want: bool,
+        goal: &Goal,
         many: usize,
     ) -> Result<Vec<Assignment>, Stop> {
         let last = level + 1 == self.blocks.len();
-        let mut round = self.start(level, known, want, !last || many > 1)?;
+        let mut round = self.start(level, known, goal, !last || many > 1)?;
         let mut found = Vec::new();
         loop {
             if level == 0 {
@@ -104,12 +110,12 @@ impl<'s, 'a> Cegis<'s, 'a, '_> {
         &mut self,
         level: usize,
         known: &Assignment,
-        want: bool,
+        goal: &Goal,
         incremental: bool,
     ) -> Result<Round<'s, 'a>, Stop> {
-        let dialogue = self.oracle.open(false, incremental)?;
+        let dialogue = self.oracle.open(1, incremental)?;
         let encoder = self.encoder;
-        let mut query = Query::new(encoder, known);
+        let mut query = Query::new(encoder, known).with_slack(self.slack.filter(|_| level == 0));
         let mut env = query.empty_env();
         let mut recipes = vec![None; env.len()];
         for (at, path) in known.iter().enumerate() {
@@ -118,11 +124,19 @@ impl<'s, 'a> Cegis<'s, 'a, '_> {
             }
         }
         for &path in &self.blocks[level] {
-            env[usize::from(path)] = Some(query.declare(path, want)?);
+            env[usize::from(path)] = Some(query.declare(path, goal)?);
             recipes[usize::from(path)] = Some(Recipe::Declared);
         }
+        let formula = &encoder.objective.formula;
+        query.lift_slack();
+        let (own, rest) = goal.split(formula, &|path| env[usize::from(path)].is_some());
+        query.script.section("what the formula asks of these paths alone");
+        let demanded = query.goal(&env, &own);
+        query.script.assert(demanded);
+        let against = rest.opposed(formula);
         let first = Game { env, recipes, guard: Term::TRUE, level: level + 1 };
-        let mut round = Round { query, dialogue, first: first.clone(), games: Vec::new(), want };
+        let mut round =
+            Round { query, dialogue, first: first.clone(), games: Vec::new(), goal: rest, against };
         round.conclude(self.blocks, first);
         Ok(round)
     }
@@ -165,7 +179,7 @@ impl<'s, 'a> Cegis<'s, 'a, '_> {
         for at in 0..round.games.len() {
             let game = round.games[at].clone();
             let Some(assignment) = self.assignment(round, &game, known, model)? else { continue };
-            for answer in self.find(game.level, &assignment, !round.want, PER_ROUND)? {
+            for answer in self.find(game.level, &assignment, &round.against, PER_ROUND)? {
                 defeated = true;
                 self.add(round, &game, &answer)?;
             }
@@ -176,18 +190,28 @@ impl<'s, 'a> Cegis<'s, 'a, '_> {
     /// Adds the instance that a counterexample stands for.
     fn add(&mut self, round: &mut Round<'_, 'a>, game: &Game, answer: &Assignment) -> Result<(), Stop> {
         let mut next = game.clone();
+        let (mut absolute, mut beside) = (true, Vec::new());
         for &path in &self.blocks[game.level] {
             let Some(counterexample) = &answer[usize::from(path)] else { continue };
             let instance = self.encoder.generalize(path, counterexample, answer);
-            let (terms, guard) = round.query.instantiate(path, &instance, &next.env, !round.want)?;
+            let (terms, guard) = round.query.instantiate(path, &instance, &next.env, &round.against)?;
             next.guard = round.query.script.terms.and2(next.guard, guard);
             next.env[usize::from(path)] = Some(terms);
+            absolute &= instance.is_absolute();
             next.recipes[usize::from(path)] = Some(Recipe::Instance(instance));
+            beside.push((path, counterexample.clone()));
         }
         next.level += 1;
+        if absolute && game.guard == Term::TRUE && next.level == self.blocks.len() {
+            for &path in &self.blocks[game.level - 1] {
+                if let Some(terms) = &game.env[usize::from(path)] {
+                    round.query.restrict(path, terms, &round.goal, &beside)?;
+                }
+            }
+        }
         if next.level < self.blocks.len() {
             for &path in &self.blocks[next.level] {
-                next.env[usize::from(path)] = Some(round.query.declare(path, round.want)?);
+                next.env[usize::from(path)] = Some(round.query.declare(path, &round.goal)?);
                 next.recipes[usize::from(path)] = Some(Recipe::Declared);
             }
             next.level += 1;
@@ -196,21 +220,23 @@ impl<'s, 'a> Cegis<'s, 'a, '_> {
         Ok(())
     }
 
-    /// Asks for an answer that differs from this one in more than what follows from the paths known; whether there
-    /// can be one.
+    /// Asks for an answer that differs from this one in more than what follows from the paths known; whether that is
+    /// worth while. An answer that has nothing to do with those paths makes a weak instance: one a round is enough.
     fn exclude(&mut self, round: &mut Round<'_, 'a>, level: usize, answer: &Assignment) -> bool {
         let mut alike = Vec::new();
+        let mut absolute = true;
         for &path in &self.blocks[level] {
             if let (Some(own), Some(terms)) =
                 (&answer[usize::from(path)], &round.first.env[usize::from(path)])
             {
                 let instance = self.encoder.generalize(path, own, answer);
+                absolute &= instance.is_absolute();
                 alike.push(round.query.resembles(terms, &instance));
             }
         }
         let alike = round.query.script.terms.and(&alike);
         round.query.script.assert(!alike);
-        alike != Term::TRUE
+        alike != Term::TRUE && !absolute
     }
 }
 
@@ -222,7 +248,7 @@ impl Round<'_, '_> {
             return;
         }
         self.query.script.section("the formula");
-        let formula = self.query.formula(&game.env).negate_if(!self.want);
+        let formula = self.query.goal(&game.env, &self.goal);
         self.query.script.clause(&[!game.guard, formula]);
     }
 

@@ -1,7 +1,7 @@
 //! One query for the whole objective: with its quantifiers, or expanded.
 
 use crate::oracle::{Oracle, Stop};
-use hyperplan_encode::{Encoder, Env, Error, Known, Query};
+use hyperplan_encode::{Encoder, Env, Error, Goal, Known, Query};
 use hyperplan_problem::PathId;
 use hyperplan_smt::{Script, Term};
 
@@ -18,19 +18,21 @@ pub(crate) fn keep<'e, 'a>(
     blocks: &[Vec<PathId>],
     want: bool,
 ) -> Result<Direct<'e, 'a>, Error> {
-    let mut direct = leading(encoder, blocks, want)?;
+    let goal = Goal::new(&encoder.objective.formula, want);
+    let against = goal.opposed(&encoder.objective.formula);
+    let mut direct = leading(encoder, blocks, &goal, None)?;
     let mut env = direct.env.clone();
     // From the outside in the paths are bound, from the inside out the formula is closed.
     let mut open = Vec::new();
     for (depth, block) in blocks.iter().enumerate().skip(1) {
         let own = depth % 2 == 0;
         for &path in block {
-            let (terms, bound, guard) = direct.query.bind(path, want == own)?;
+            let (terms, bound, guard) = direct.query.bind(path, if own { &goal } else { &against })?;
             env[usize::from(path)] = Some(terms);
             open.push((own, bound, guard));
         }
     }
-    let mut formula = direct.query.formula(&env).negate_if(!want);
+    let mut formula = direct.query.goal(&env, &goal);
     let terms = &mut direct.query.script.terms;
     for (own, bound, guard) in open.into_iter().rev() {
         formula = if own {
@@ -46,28 +48,49 @@ pub(crate) fn keep<'e, 'a>(
     Ok(direct)
 }
 
-/// Builds the quantifier-free query: each block of the other player becomes one copy for each of its cases, and each
-/// copy has its own choice of the blocks that follow.
+/// Builds the quantifier-free query that follows all runs of the other player's path at once. `None` where the other
+/// player has more than one path, or not the last word, or where there is too much to follow.
+pub(crate) fn sweep<'e, 'a>(
+    encoder: &'e Encoder<'a>,
+    blocks: &[Vec<PathId>],
+    want: bool,
+    slack: Option<u32>,
+) -> Result<Option<Direct<'e, 'a>>, Error> {
+    let [_, last] = blocks else { return Ok(None) };
+    let [path] = last.as_slice() else { return Ok(None) };
+    let (mut direct, rest) = demanding(encoder, blocks, want, slack)?;
+    let against = rest.opposed(&encoder.objective.formula);
+    let swept = direct.query.sweep(*path, &direct.env, &against)?;
+    Ok(swept.then_some(direct))
+}
+
+/// Builds a quantifier-free query: by [`sweep`] if possible; else each block of the other player becomes one copy for
+/// each of its cases, and each copy has its own choice of the blocks that follow.
 pub(crate) fn expand<'e, 'a>(
     encoder: &'e Encoder<'a>,
     blocks: &[Vec<PathId>],
     want: bool,
+    slack: Option<u32>,
 ) -> Result<Direct<'e, 'a>, Error> {
-    let mut direct = leading(encoder, blocks, want)?;
+    if let Some(direct) = sweep(encoder, blocks, want, slack)? {
+        return Ok(direct);
+    }
+    let (mut direct, rest) = demanding(encoder, blocks, want, slack)?;
+    let against = rest.opposed(&encoder.objective.formula);
     let mut copies = vec![(direct.env.clone(), Term::TRUE)];
     for (depth, block) in blocks.iter().enumerate().skip(1) {
         for &path in block {
             let mut next = Vec::new();
             if depth % 2 == 0 {
                 for (mut env, guard) in copies {
-                    env[usize::from(path)] = Some(direct.query.declare(path, want)?);
+                    env[usize::from(path)] = Some(direct.query.declare(path, &rest)?);
                     next.push((env, guard));
                 }
             } else {
-                let cases = encoder.cases(path, !want)?;
+                let cases = encoder.cases(path, &against)?;
                 for (env, guard) in copies {
                     for case in &cases {
-                        let (terms, is_path) = direct.query.instantiate(path, case, &env, !want)?;
+                        let (terms, is_path) = direct.query.instantiate(path, case, &env, &against)?;
                         let mut env = env.clone();
                         env[usize::from(path)] = Some(terms);
                         next.push((env, direct.query.script.terms.and2(guard, is_path)));
@@ -78,27 +101,46 @@ pub(crate) fn expand<'e, 'a>(
             copies = next;
         }
     }
-    direct.query.script.section("the formula, once for each case");
+    direct.query.script.section("the rest of the formula, once for each case");
     for (env, guard) in copies {
         // A case that is impossible asks for nothing.
         if guard != Term::FALSE {
-            let formula = direct.query.formula(&env).negate_if(!want);
+            let formula = direct.query.goal(&env, &rest);
             direct.query.script.clause(&[!guard, formula]);
         }
     }
     Ok(direct)
 }
 
-fn leading<'e, 'a>(
+/// The leading block with what the formula asks of it alone, and the rest of what its player wants.
+fn demanding<'e, 'a>(
     encoder: &'e Encoder<'a>,
     blocks: &[Vec<PathId>],
     want: bool,
+    slack: Option<u32>,
+) -> Result<(Direct<'e, 'a>, Goal), Error> {
+    let formula = &encoder.objective.formula;
+    let goal = Goal::new(formula, want);
+    let (own, rest) = goal.split(formula, &|path| blocks[0].contains(&path));
+    let mut direct = leading(encoder, blocks, &goal, slack)?;
+    direct.query.script.section("what the formula asks of the leading block alone");
+    let demanded = direct.query.goal(&direct.env, &own);
+    direct.query.script.assert(demanded);
+    Ok((direct, rest))
+}
+
+fn leading<'e, 'a>(
+    encoder: &'e Encoder<'a>,
+    blocks: &[Vec<PathId>],
+    goal: &Goal,
+    slack: Option<u32>,
 ) -> Result<Direct<'e, 'a>, Error> {
-    let mut query = Query::new(encoder, &[]);
+    let mut query = Query::new(encoder, &[]).with_slack(slack);
     let mut env = query.empty_env();
     for &path in &blocks[0] {
-        env[usize::from(path)] = Some(query.declare(path, want)?);
+        env[usize::from(path)] = Some(query.declare(path, goal)?);
     }
+    query.lift_slack();
     Ok(Direct { query, env })
 }
 
@@ -108,13 +150,13 @@ impl Direct<'_, '_> {
         self.query.script
     }
 
-    /// Asks a solver.
+    /// Asks a solver; `blocks` of quantifiers are in the query, the leading one as free symbols.
     pub(crate) fn solve(
         &self,
         oracle: &mut Oracle<'_>,
-        quantified: bool,
+        blocks: usize,
     ) -> Result<Option<Vec<Option<Known>>>, Stop> {
-        let mut dialogue = oracle.open(quantified, false)?;
+        let mut dialogue = oracle.open(blocks, false)?;
         let script = &self.query.script;
         if !oracle.check(&mut dialogue, script)? {
             return Ok(None);

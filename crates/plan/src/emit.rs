@@ -67,8 +67,8 @@ fn build(encoder: &Encoder<'_>, config: &EmitConfig) -> Result<Emitted, Error> {
                     .into(),
             ));
         }
-        Quantifiers::Expand => direct::expand(encoder, &blocks, exists),
-        _ if blocks.len() == 1 => direct::expand(encoder, &blocks, exists),
+        Quantifiers::Expand => direct::expand(encoder, &blocks, exists, None),
+        _ if blocks.len() == 1 => direct::expand(encoder, &blocks, exists, None),
         Quantifiers::Keep | Quantifiers::Auto => direct::keep(encoder, &blocks, exists),
     };
     let script = query?.into_script();

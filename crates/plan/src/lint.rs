@@ -4,7 +4,7 @@ use crate::cegis::Cegis;
 use crate::config::{Config, Quantifiers, States};
 use crate::oracle::{Oracle, Stop};
 use crate::prepare::{no_dead_ends, without_paths};
-use hyperplan_encode::{Encoder, Graph, Limits, inspect};
+use hyperplan_encode::{Encoder, Goal, Graph, Limits, inspect};
 use hyperplan_problem::{
     FormulaId, Node, Objective, PathVar, Problem, Quantifier, System, SystemId, display,
 };
@@ -53,14 +53,20 @@ fn lint_system(problem: &Problem, id: SystemId) -> Vec<Diagnostic> {
     for (first, second, state) in findings.overlaps {
         found.push(overlap(system, first, second, &example(state)));
     }
-    for (clause, state) in findings.lost {
-        let message = format!("an update leaves its variable's range, such as in {}", example(state));
-        let help = "there is no such transition then; a `when` can say so";
-        found.push(
-            Diagnostic::warning("lost-transition", system.clauses[clause].span, message).with_help(help),
-        );
+    if let Some(&(first, state)) = findings.lost.first() {
+        found.push(lost(system, findings.lost.len(), first, &example(state)));
     }
     found
+}
+
+/// Stopping at the end of a range is an idiom, walls without guards: one warning for a system is enough.
+fn lost(system: &System, clauses: usize, first: usize, example: &str) -> Diagnostic {
+    let message = match clauses {
+        1 => format!("an update leaves its variable's range, such as in {example}"),
+        n => format!("updates of {n} clauses leave their variables' ranges, this one in {example}"),
+    };
+    Diagnostic::warning("lost-transition", system.clauses[first].span, message)
+        .with_help("there is no such transition then; a `when` can say so")
 }
 
 fn overlap(system: &System, first: usize, second: usize, example: &str) -> Diagnostic {
@@ -174,7 +180,7 @@ fn possible(
         return Err(Stop::Unknown("no paths".into()));
     }
     let blocks = [question.paths.keys().collect::<Vec<_>>()];
-    let mut cegis = Cegis { encoder: &encoder, oracle: &mut oracle, blocks: &blocks, rounds: 0 };
+    let mut cegis = Cegis { encoder: &encoder, oracle: &mut oracle, blocks: &blocks, rounds: 0, slack: None };
     let none = vec![None; question.paths.len()];
-    Ok(!cegis.find(0, &none, true, 1)?.is_empty())
+    Ok(!cegis.find(0, &none, &Goal::new(&question.formula, true), 1)?.is_empty())
 }

@@ -33,11 +33,12 @@ impl<'c> Oracle<'c> {
         Oracle { config, identity: None, solving: 0.0 }
     }
 
-    /// Starts a dialogue.
-    pub(crate) fn open(&mut self, quantified: bool, incremental: bool) -> Result<Dialogue, Stop> {
+    /// Starts a dialogue about queries with so many blocks of quantifiers, the leading one as free symbols.
+    pub(crate) fn open(&mut self, blocks: usize, incremental: bool) -> Result<Dialogue, Stop> {
         let options = Options {
             seed: self.config.seed,
-            quantified,
+            quantified: blocks > 1,
+            nested: blocks > 2,
             incremental,
             memory_mib: self.config.memory_mib,
             queries: self.config.queries.clone(),

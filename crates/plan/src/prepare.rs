@@ -1,7 +1,7 @@
 //! What must be settled before quantifiers are: whether paths exist at all, and whether they can go on.
 
 use crate::oracle::{Oracle, Stop};
-use hyperplan_encode::{Encoder, Query};
+use hyperplan_encode::{Encoder, Goal, Query};
 use hyperplan_problem::{Expr, Mode, Node, Objective, PathId, Quantifier};
 
 /// The maximal runs of one quantifier, outermost first.
@@ -24,7 +24,7 @@ pub(crate) fn no_dead_ends(encoder: &Encoder<'_>, oracle: &mut Oracle<'_>) -> Re
             continue;
         }
         let script = encoder.stuck(path);
-        let mut dialogue = oracle.open(false, false)?;
+        let mut dialogue = oracle.open(1, false)?;
         if oracle.check(&mut dialogue, &script)? {
             return Err(Stop::Unknown(format!(
                 "system {} is too large to enumerate and has states without transitions, so it is not known which \
@@ -43,8 +43,8 @@ pub(crate) fn without_paths(encoder: &Encoder<'_>, oracle: &mut Oracle<'_>) -> R
             Some(known) => known,
             None => {
                 let mut query = Query::new(encoder, &[]);
-                query.declare(path, true)?;
-                let mut dialogue = oracle.open(false, false)?;
+                query.declare(path, &Goal::new(&encoder.objective.formula, true))?;
+                let mut dialogue = oracle.open(1, false)?;
                 oracle.check(&mut dialogue, &query.script)?
             }
         };

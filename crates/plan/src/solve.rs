@@ -5,11 +5,14 @@ use crate::config::{Config, Error, Outcome, Quantifiers, Seconds, States, Verdic
 use crate::direct;
 use crate::oracle::{Oracle, Stop};
 use crate::prepare::{blocks, decided, no_dead_ends, without_paths};
-use hyperplan_encode::{Encoder, Limits};
+use hyperplan_encode::{Encoder, Goal, Limits};
 use hyperplan_problem::{Objective, PathId, Problem, Quantifier, Strategy};
 use hyperplan_solver::Spec;
 use hyperplan_verify as verify;
 use std::time::Instant;
+
+/// Runs that are hardly longer than the shortest make small queries, so they are tried first; then all.
+const SLACKS: [Option<u32>; 2] = [Some(4), None];
 
 /// Decides an objective. A strategy (or counterexample) in the outcome has been verified, unless the configuration
 /// says not to.
@@ -61,7 +64,6 @@ fn unknown(objective: &Objective, encoder: &Encoder<'_>, config: &Config) -> Out
     let quantifiers = match config.quantifiers {
         // A single block has no quantifiers to decide: its query has none.
         _ if blocks(objective).len() == 1 => Quantifiers::Expand,
-        Quantifiers::Auto => Quantifiers::Cegis,
         chosen => chosen,
     };
     Outcome {
@@ -89,15 +91,49 @@ fn search(
     let objective = encoder.objective;
     let blocks = blocks(objective);
     let want = leading(objective) == Quantifier::Exists;
-    if outcome.quantifiers == Quantifiers::Cegis {
-        let mut cegis = Cegis { encoder, oracle, blocks: &blocks, rounds: 0 };
-        let known = vec![None; objective.paths.len()];
-        let found = cegis.find(0, &known, want, 1);
-        outcome.iterations = cegis.rounds;
-        return Ok(found?.pop());
+    let choice = outcome.quantifiers;
+    if choice == Quantifiers::Keep {
+        outcome.iterations = 1;
+        return keep(encoder, config, oracle, &blocks, want);
     }
-    let quantified = outcome.quantifiers == Quantifiers::Keep;
-    if quantified && config.solver == Spec::Builtin {
+    let goal = Goal::new(&objective.formula, want);
+    for slack in SLACKS {
+        let query = match choice {
+            // Without a second block there is nothing to expand; the search below asks one query.
+            Quantifiers::Expand if blocks.len() > 1 => Some(direct::expand(encoder, &blocks, want, slack)?),
+            Quantifiers::Auto => direct::sweep(encoder, &blocks, want, slack)?,
+            _ => None,
+        };
+        let found = if let Some(query) = query {
+            outcome.quantifiers = Quantifiers::Expand;
+            outcome.iterations += 1;
+            query.solve(oracle, 1)?
+        } else {
+            if choice == Quantifiers::Auto {
+                outcome.quantifiers = Quantifiers::Cegis;
+            }
+            let mut cegis = Cegis { encoder, oracle, blocks: &blocks, rounds: 0, slack };
+            let known = vec![None; objective.paths.len()];
+            let found = cegis.find(0, &known, &goal, 1);
+            outcome.iterations += cegis.rounds;
+            found?.pop()
+        };
+        if found.is_some() {
+            return Ok(found);
+        }
+    }
+    Ok(None)
+}
+
+/// One query with its quantifiers, for a solver that takes them.
+fn keep(
+    encoder: &Encoder<'_>,
+    config: &Config,
+    oracle: &mut Oracle<'_>,
+    blocks: &[Vec<PathId>],
+    want: bool,
+) -> Result<Option<Assignment>, Stop> {
+    if config.solver == Spec::Builtin {
         return Err(Error::Unsupported(
             "--quantifiers keep needs a solver that decides quantifiers, such as z3, cvc5 or yices; the builtin \
              solver takes cegis or expand"
@@ -105,13 +141,7 @@ fn search(
         )
         .into());
     }
-    let query = if quantified {
-        direct::keep(encoder, &blocks, want)
-    } else {
-        direct::expand(encoder, &blocks, want)
-    };
-    outcome.iterations = 1;
-    query?.solve(oracle, quantified)
+    direct::keep(encoder, blocks, want)?.solve(oracle, blocks.len())
 }
 
 fn leading(objective: &Objective) -> Quantifier {
@@ -178,7 +208,9 @@ fn defeated(encoder: &Encoder<'_>, config: &Config, strategy: &Strategy) -> Resu
         return Ok(true);
     }
     let own = Config { solver: Spec::Builtin, queries: None, ..config.clone() };
+    let formula = &objective.formula;
+    let against = Goal::new(formula, want).opposed(formula);
     let mut oracle = Oracle::new(&own);
-    let mut cegis = Cegis { encoder, oracle: &mut oracle, blocks: &blocks, rounds: 0 };
-    Ok(!cegis.find(1, &known, !want, 1)?.is_empty())
+    let mut cegis = Cegis { encoder, oracle: &mut oracle, blocks: &blocks, rounds: 0, slack: None };
+    Ok(!cegis.find(1, &known, &against, 1)?.is_empty())
 }

@@ -58,6 +58,17 @@ pub enum PathLeaf {
     Enabled(PathId, ActionId),
 }
 
+impl PathLeaf {
+    /// The path or paths that it reads.
+    #[must_use]
+    pub fn paths(self) -> [Option<PathId>; 2] {
+        match self {
+            PathLeaf::State(p, _) | PathLeaf::Took(p, _) | PathLeaf::Enabled(p, _) => [Some(p), None],
+            PathLeaf::SameAction(p, q) | PathLeaf::SameState(p, q) => [Some(p), Some(q)],
+        }
+    }
+}
+
 /// Comparison of two values of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Comparison {

@@ -126,9 +126,12 @@ impl Model {
         })
     }
 
-    /// The truth value of a Boolean literal; a symbol without a value is false.
+    /// The truth value of a Boolean literal or constant; a symbol without a value is false.
     #[must_use]
     pub fn is_true(&self, literal: Term) -> bool {
+        if literal.is_const() {
+            return literal == Term::TRUE;
+        }
         self.get(literal).and_then(Value::as_bool).unwrap_or(literal.is_negated())
     }
 
@@ -157,6 +160,29 @@ impl Extend<(Term, Value)> for Model {
     fn extend<I: IntoIterator<Item = (Term, Value)>>(&mut self, values: I) {
         for (symbol, value) in values {
             self.insert(symbol, value);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::terms::Terms;
+
+    #[test]
+    fn literals_and_constants_are_true_or_false() {
+        let mut terms = Terms::new();
+        let stem = terms.stem("x");
+        let [a, b, absent] = [0, 1, 2].map(|time| terms.symbol(stem, Some(time), Sort::Bool));
+        let mut model: Model = [(a, Value::Bool(true)), (!b, Value::Bool(true))].into_iter().collect();
+        for _ in 0..2 {
+            assert!(model.is_true(Term::TRUE) && model.is_true(!Term::FALSE));
+            assert!(!model.is_true(Term::FALSE) && !model.is_true(!Term::TRUE));
+            assert!(model.is_true(a) && !model.is_true(!a));
+            assert!(!model.is_true(b) && model.is_true(!b));
+            assert!(!model.is_true(absent) && model.is_true(!absent));
+            // Whatever a solver says of the constants changes nothing.
+            model.insert(Term::TRUE, Value::Bool(false));
         }
     }
 }

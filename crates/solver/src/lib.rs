@@ -12,6 +12,7 @@ mod embedded;
 mod error;
 mod external;
 mod session;
+mod transcript;
 
 pub use deadline::Deadline;
 pub use error::Error;

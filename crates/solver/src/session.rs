@@ -83,6 +83,17 @@ impl FromStr for Spec {
     }
 }
 
+/// The quantifiers of a script, or those that a solver takes. Each kind includes those before it.
+#[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(crate) enum Quantifiers {
+    /// No quantifiers.
+    None,
+    /// Quantifiers that do not stand inside of others: with the symbols, exists-forall.
+    ExistsForall,
+    /// Any quantifiers.
+    Any,
+}
+
 /// How to run a solver.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
@@ -90,14 +101,43 @@ pub struct Options {
     pub seed: u64,
     /// The script will contain quantifiers.
     pub quantified: bool,
+    /// Some of them will stand inside others.
+    pub nested: bool,
     /// More than one check will be asked for.
     pub incremental: bool,
     /// Memory limit of a solver process, in MiB. The embedded engine shares our memory and has none.
     pub memory_mib: Option<u64>,
-    /// A directory to keep everything that is sent in, one replayable file per solver process.
+    /// A directory to keep every query in: one replayable file per solver process, or per check of the
+    /// embedded engine.
     pub queries: Option<PathBuf>,
     /// The expected answer, for the `:status` of the kept files.
     pub status: Option<Status>,
+}
+
+impl Options {
+    /// The quantifiers that the script will have.
+    pub(crate) fn quantifiers(&self) -> Quantifiers {
+        match (self.quantified, self.nested) {
+            (_, true) => Quantifiers::Any,
+            (true, false) => Quantifiers::ExistsForall,
+            (false, false) => Quantifiers::None,
+        }
+    }
+
+    /// Refuses quantifiers beyond those that the solver takes, and names solvers that take them.
+    pub(crate) fn demand_at_most(&self, taken: Quantifiers, solver: &str) -> Result<(), Error> {
+        if self.quantifiers() <= taken {
+            return Ok(());
+        }
+        let beyond = match taken {
+            Quantifiers::None => "quantifiers",
+            _ => "quantifiers inside quantifiers",
+        };
+        let others = external::that_take(self.quantifiers()).join(", ");
+        Err(Error::Unsupported {
+            what: format!("the {solver} solver cannot handle {beyond}: use one of {others}"),
+        })
+    }
 }
 
 /// Starts a session. The solver must be installed.

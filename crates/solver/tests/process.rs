@@ -187,6 +187,81 @@ fn queries_are_kept_and_can_be_replayed() {
     assert!(kept.contains("(assert x@0)\n(check-sat)\n(get-value ( x@0))\n(exit)\n"), "{kept}");
 }
 
+#[cfg(any(feature = "cadical", feature = "batsat"))]
+#[test]
+fn every_check_of_the_embedded_solver_is_kept() {
+    let directory = tempfile::tempdir().expect("a temporary directory");
+    let queries = directory.path().join("a/b");
+    let options = Options { queries: Some(queries.clone()), incremental: true, ..Options::default() };
+    let (mut script, x) = small();
+    let stem = script.terms.stem("y");
+    let y = script.terms.symbol(stem, None, Sort::Bool);
+    let mut session = open(&Spec::Builtin, &options).expect("it is built in");
+    let mut check = |script: &Script, assumptions: &[Term]| {
+        session.check(script, assumptions, &Deadline::never()).expect("an answer")
+    };
+    assert_eq!(check(&script, &[]), Answer::Sat);
+    script.clause(&[!x, y]);
+    assert_eq!(check(&script, &[!y]), Answer::Unsat);
+    assert_eq!(check(&script, &[]), Answer::Sat);
+    let asserted = |number: &str| -> Vec<String> {
+        let text = fs::read_to_string(queries.join(format!("{number}-builtin.smt2"))).expect("a file");
+        assert!(text.ends_with("(check-sat)\n(exit)\n"), "{text}");
+        text.lines().filter(|line| line.starts_with("(assert")).map(str::to_owned).collect()
+    };
+    assert_eq!(asserted("0001"), ["(assert x@0)"]);
+    assert_eq!(asserted("0002"), ["(assert x@0)", "(assert (or (not x@0) y))", "(assert (not y))"]);
+    assert_eq!(asserted("0003"), ["(assert x@0)", "(assert (or (not x@0) y))"]);
+    assert_eq!(fs::read_dir(&queries).expect("it exists").count(), 3);
+}
+
+#[cfg(any(feature = "cadical", feature = "batsat"))]
+#[test]
+fn queries_that_cannot_be_kept_are_an_error() {
+    let directory = tempfile::tempdir().expect("a temporary directory");
+    let file = directory.path().join("file");
+    fs::write(&file, "").expect("the directory is ours");
+    let options = Options { queries: Some(file), ..Options::default() };
+    let mut session = open(&Spec::Builtin, &options).expect("it is built in");
+    let error = session.check(&small().0, &[], &Deadline::never()).expect_err("a file is no directory");
+    assert!(matches!(error, Error::Io { .. }), "{error}");
+}
+
+#[test]
+fn quantifiers_beyond_a_solver_are_refused() {
+    let refused = |spec: Spec, quantified, nested| {
+        let options = Options { quantified, nested, ..Options::default() };
+        match open(&spec, &options) {
+            Err(Error::Unsupported { what }) => Some(what),
+            _ => None,
+        }
+    };
+    let profile = |name: &str| Spec::Profile(name.to_owned());
+    let what = refused(profile("yices"), true, true);
+    let expected =
+        "the yices solver cannot handle quantifiers inside quantifiers: use one of z3, cvc5, bitwuzla";
+    assert_eq!(what.as_deref(), Some(expected));
+    assert_eq!(refused(profile("yices"), true, false), None);
+    assert_eq!(refused(profile("yices"), false, false), None);
+    for name in ["z3", "cvc5", "bitwuzla"] {
+        assert_eq!(refused(profile(name), true, true), None, "{name}");
+    }
+    // What a command can do is not known.
+    assert_eq!(refused(Spec::Command("no-such-solver".to_owned()), true, true), None);
+}
+
+#[cfg(any(feature = "cadical", feature = "batsat"))]
+#[test]
+fn the_embedded_solver_names_solvers_that_take_the_quantifiers() {
+    let what = |nested| {
+        let options = Options { quantified: true, nested, ..Options::default() };
+        open(&Spec::Builtin, &options).err().map(|error| error.to_string())
+    };
+    let start = "the builtin solver cannot handle quantifiers: use one of";
+    assert_eq!(what(false), Some(format!("{start} z3, cvc5, yices, bitwuzla")));
+    assert_eq!(what(true), Some(format!("{start} z3, cvc5, bitwuzla")));
+}
+
 #[test]
 fn missing_solvers_say_where_they_were_sought() {
     let spec: Spec = "no-such-solver --flag".parse().expect("any command line will do");

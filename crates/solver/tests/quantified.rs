@@ -115,7 +115,7 @@ fn plain(terms: &mut Terms, stems: &Stems, node: Node, of: impl Fn(usize) -> Ter
 #[test]
 fn quantifiers_mean_their_expansion() {
     for name in installed(&["z3", "cvc5"]) {
-        let options = Options { quantified: true, incremental: true, ..Options::default() };
+        let options = Options { quantified: true, nested: true, incremental: true, ..Options::default() };
         let mut session = open(&Spec::Profile(name.clone()), &options).expect("it is installed");
         let mut script = Script::new();
         let mut contingent = 0;

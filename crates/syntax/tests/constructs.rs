@@ -113,12 +113,6 @@ fn system_items() {
 }
 
 #[test]
-fn double_bar_between_actions() {
-    let file = good("system S { on a || b | c { } }");
-    assert_eq!(items(system(&file, 0)), ["on a,b,c:"]);
-}
-
-#[test]
 fn grids() {
     let rows = |system: &System| match &system.kind {
         SystemKind::GridRows(rows) => rows.iter().map(|row| row.text.clone()).collect::<Vec<_>>().join("/"),

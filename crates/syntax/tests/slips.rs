@@ -144,6 +144,19 @@ fn semicolons() {
 }
 
 #[test]
+fn actions_of_a_clause() {
+    for separator in ["||", ","] {
+        let text = format!("system S {{ on a{separator} b | c {{ }} }}");
+        let found = faults(&text);
+        assert_eq!(
+            found,
+            [format!("wrong-operator: actions of a clause are separated by `|` @ {separator}")]
+        );
+        assert_eq!(advice(&text), "write `on a | b { ... }`");
+    }
+}
+
+#[test]
 fn updates() {
     let update = |text: &str| advice(&format!("system S {{ on a {{ {text} y' = 2; }} init true; }}"));
     assert_eq!(update("x = x + 1;"), "the next value of `x` is written `x'`");

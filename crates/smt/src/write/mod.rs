@@ -60,6 +60,8 @@ pub struct WriteOptions {
     pub logic: Option<String>,
     /// Ask for a model: `:produce-models` and `(get-model)`.
     pub model: bool,
+    /// Boolean terms that are asserted after everything else: the assumptions of one check.
+    pub assumptions: Vec<Term>,
 }
 
 /// Writes a script as a benchmark that stands on its own: header, logic, declarations, definitions
@@ -73,6 +75,7 @@ pub fn write_script(out: &mut impl io::Write, script: &Script, options: &WriteOp
     let terms = &script.terms;
     let mut printer = Printer::new();
     printer.scan(terms, script.literals(0));
+    printer.scan(terms, &options.assumptions);
     let logic = options.logic.clone().unwrap_or_else(|| logic(&printer.features()).to_owned());
     write_header(&mut w, options, &logic)?;
     printer.declare(&mut w, terms)?;
@@ -82,6 +85,9 @@ pub fn write_script(out: &mut impl io::Write, script: &Script, options: &WriteOp
             write_comment(&mut w, text)?;
         }
         printer.assertion(&mut w, terms, literals)?;
+    }
+    for &assumption in &options.assumptions {
+        printer.assertion(&mut w, terms, &[assumption])?;
     }
     w.write_all(b"(check-sat)\n")?;
     if options.model {

@@ -1,4 +1,4 @@
-//! The SAT solvers behind rustsat: CaDiCaL, or batsat where there is no C++ compiler.
+//! The SAT solvers behind rustsat: CaDiCaL, or batsat where there is only Rust.
 
 use rustsat::solvers::{Solve, SolveIncremental, SolverResult};
 use rustsat::types::{Cl, Lit, TernaryVal};

@@ -1,19 +1,21 @@
 //! The session of the embedded engine.
 
-use hyperplan_smt::{Script, Sort, Term, Value};
+use hyperplan_smt::{Header, Script, Sort, Term, Value, WriteOptions, write_script};
 
 use super::backend::Backend;
 use super::bits::Gates;
 use super::cnf::Cnf;
 use crate::deadline::Deadline;
 use crate::error::Error;
-use crate::session::{Answer, Identity, Options, Session};
+use crate::session::{Answer, Identity, Options, Quantifiers, Session};
+use crate::transcript::{cannot_keep, numbered};
 
 /// How many assertions are encoded between two looks at the clock.
 const STRIDE: usize = 1 << 12;
 
 /// The embedded engine.
 pub(crate) struct Engine {
+    options: Options,
     cnf: Cnf,
     version: String,
     /// How many assertions have been encoded.
@@ -27,14 +29,29 @@ pub(crate) struct Engine {
 
 impl Engine {
     pub(crate) fn new(options: &Options) -> Result<Engine, Error> {
-        if options.quantified {
-            let what = "the builtin solver cannot handle quantifiers: use z3, cvc5 or yices";
-            return Err(Error::Unsupported { what: what.to_owned() });
-        }
+        options.demand_at_most(Quantifiers::None, "builtin")?;
         let backend = Backend::new(options.seed)?;
         let version = format!("{} ({})", env!("CARGO_PKG_VERSION"), backend.signature());
         let cnf = Cnf::new(Gates::new(backend));
-        Ok(Engine { cnf, version, fed: 0, has_model: false, unsupported: None, refuted: false })
+        Ok(Engine {
+            options: options.clone(),
+            cnf,
+            version,
+            fed: 0,
+            has_model: false,
+            unsupported: None,
+            refuted: false,
+        })
+    }
+
+    /// Keeps the query as a file that any solver can replay: everything asserted so far, and the assumptions as
+    /// further assertions.
+    fn keep(&self, script: &Script, assumptions: &[Term]) -> Result<(), Error> {
+        let Some(directory) = &self.options.queries else { return Ok(()) };
+        let header = Header { status: self.options.status, ..Header::default() };
+        let options = WriteOptions { header, assumptions: assumptions.to_vec(), ..WriteOptions::default() };
+        let mut file = numbered(directory, "builtin")?;
+        write_script(&mut file, script, &options).map_err(|source| cannot_keep(directory, source))
     }
 
     /// Encodes what is new; false if the deadline came first.
@@ -82,6 +99,7 @@ impl Session for Engine {
         if let Some(what) = &self.unsupported {
             return Err(Error::Unsupported { what: what.clone() });
         }
+        self.keep(script, assumptions)?;
         if self.refuted {
             return Ok(Answer::Unsat);
         }

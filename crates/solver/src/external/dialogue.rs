@@ -10,10 +10,10 @@ use super::discover::{locate, search, version};
 use super::process::{Next, Process};
 use super::profile::{Profile, profile};
 use super::reply::{self, Meaning};
-use super::transcript::Transcript;
 use crate::deadline::Deadline;
 use crate::error::Error;
-use crate::session::{Answer, Identity, Options, Session};
+use crate::session::{Answer, Identity, Options, Quantifiers, Session};
+use crate::transcript::Transcript;
 
 /// How much text is gathered before it is sent.
 const PIECE: usize = 1 << 16;
@@ -26,10 +26,11 @@ const PATIENCE: Duration = Duration::from_secs(1);
 pub(crate) fn open_profile(name: &str, options: &Options) -> Result<Box<dyn Session>, Error> {
     let profile =
         profile(name).ok_or_else(|| Error::Unsupported { what: format!("no solver {name} is known") })?;
+    options.demand_at_most(profile.quantifiers, profile.name)?;
     let (path, tried) = locate(profile);
     let missing = || Error::Missing { name: profile.name.to_owned(), tried, hint: profile.hint.to_owned() };
     let path = path.ok_or_else(missing)?;
-    let one_shot = profile.one_shot.filter(|_| options.quantified);
+    let one_shot = profile.one_shot.filter(|_| options.quantifiers() > Quantifiers::None);
     let arguments = one_shot.unwrap_or(profile.arguments).iter().map(|&text| text.to_owned()).collect();
     let program = Program {
         name: profile.name.to_owned(),
@@ -150,7 +151,7 @@ impl Dialogue {
         if let Some(option) = seed {
             text += &format!("(set-option {option} {})\n", self.options.seed % (1 << 31));
         }
-        let quantifiers = features.quantifiers || self.options.quantified;
+        let quantifiers = features.quantifiers || self.options.quantifiers() > Quantifiers::None;
         // Booleans alone would be QF_UF, for which solvers are slower than for bit-vectors.
         let bitvec = features.bitvec || !features.int && !features.real;
         text += &format!("(set-logic {})\n", logic(&Features { quantifiers, bitvec, ..features }));

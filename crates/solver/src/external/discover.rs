@@ -35,7 +35,7 @@ pub fn discover() -> Vec<Found> {
             version: path.as_deref().and_then(version),
             path,
             tried,
-            abilities: profile.abilities.iter().map(|&ability| ability.to_owned()).collect(),
+            abilities: profile.all_abilities(),
             hint: profile.hint.to_owned(),
         }
     });

@@ -5,8 +5,7 @@ mod discover;
 mod process;
 mod profile;
 mod reply;
-mod transcript;
 
 pub(crate) use dialogue::{open_command, open_profile};
 pub use discover::{Found, discover};
-pub(crate) use profile::profile;
+pub(crate) use profile::{profile, that_take};

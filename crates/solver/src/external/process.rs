@@ -11,7 +11,7 @@ use std::path::Path;
 use std::process::{ChildStderr, ChildStdout, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender, TrySendError};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::thread;
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use process_wrap::std::{ChildWrapper, CommandWrap, ProcessGroup};
@@ -41,6 +41,7 @@ pub(super) struct Process {
     input: SyncSender<Vec<u8>>,
     output: Receiver<Vec<u8>>,
     errors: Arc<Mutex<Vec<u8>>>,
+    error_reader: JoinHandle<()>,
     splitter: Splitter,
     ended: bool,
     cut: bool,
@@ -67,9 +68,19 @@ impl Process {
         thread::Builder::new().name("solver output".into()).spawn(move || read_output(stdout, &sender))?;
         let errors = Arc::new(Mutex::new(Vec::new()));
         let tail = Arc::clone(&errors);
-        thread::Builder::new().name("solver errors".into()).spawn(move || read_errors(stderr, &tail))?;
-        let splitter = Splitter::default();
-        Ok(Process { child, input, output, errors, splitter, ended: false, cut: false, reaped: false })
+        let error_reader = thread::Builder::new().name("solver errors".into());
+        let error_reader = error_reader.spawn(move || read_errors(stderr, &tail))?;
+        Ok(Process {
+            child,
+            input,
+            output,
+            errors,
+            error_reader,
+            splitter: Splitter::default(),
+            ended: false,
+            cut: false,
+            reaped: false,
+        })
     }
 
     /// Sends a piece, or stops early: when the solver reports an error, floods us, or the deadline
@@ -155,7 +166,13 @@ impl Process {
         }
         // Fails only if nothing is left of the group.
         let _ = self.child.start_kill();
-        match self.wait(Duration::from_secs(2)) {
+        let status = self.wait(Duration::from_secs(2));
+        // What it said last may be on its way yet. Only a process that left the group can keep the pipe open.
+        let end = Instant::now() + Duration::from_millis(200);
+        while !self.error_reader.is_finished() && Instant::now() < end {
+            thread::sleep(Duration::from_millis(1));
+        }
+        match status {
             Some(status) => status.to_string(),
             None => "killed".to_owned(),
         }

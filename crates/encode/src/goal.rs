@@ -1,0 +1,83 @@
+//! What one player wants of the formula, taken apart.
+//!
+//! The player of a block wants the formula at one truth value, which often is a conjunction of parts: "start on the
+//! start, and reach the goal, and ...". Parts that read no path of a later block can be demanded of the block at once;
+//! the other player then need only be asked about the others, and what the others leave to be met prunes better.
+
+use hyperplan_problem::{Formula, FormulaId, Node, PathId};
+use rustc_hash::FxHashSet;
+
+/// That all, or at least one, of some subformulas have given truth values.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Goal {
+    /// The subformulas with their values.
+    pub(crate) parts: Vec<(FormulaId, bool)>,
+    /// Whether all are wanted; else one.
+    pub(crate) all: bool,
+}
+
+impl Goal {
+    /// That the whole formula has this truth value.
+    #[must_use]
+    pub fn new(formula: &Formula, want: bool) -> Goal {
+        Goal { parts: conjuncts(formula, formula.root(), want), all: true }
+    }
+
+    /// That this goal is not met: what the other player wants.
+    #[must_use]
+    pub fn opposed(&self, formula: &Formula) -> Goal {
+        match self.parts.as_slice() {
+            [(only, want)] => Goal { parts: conjuncts(formula, *only, !want), all: true },
+            parts => Goal { parts: parts.iter().map(|&(id, want)| (id, !want)).collect(), all: !self.all },
+        }
+    }
+
+    /// The parts that read only these paths, which can be demanded of them alone, and the rest.
+    #[must_use]
+    pub fn split(&self, formula: &Formula, paths: &dyn Fn(PathId) -> bool) -> (Goal, Goal) {
+        let (own, rest) = if self.all {
+            self.parts.iter().partition(|part| reads_only(formula, part.0, paths))
+        } else {
+            (Vec::new(), self.parts.clone())
+        };
+        (Goal { parts: own, all: true }, Goal { parts: rest, all: self.all })
+    }
+}
+
+/// The parts of a conjunction, through whatever operators amount to one.
+fn conjuncts(formula: &Formula, id: FormulaId, want: bool) -> Vec<(FormulaId, bool)> {
+    let mut found = Vec::new();
+    let mut stack = vec![(id, want)];
+    while let Some((id, want)) = stack.pop() {
+        match (&formula.nodes[id], want) {
+            (Node::And(ids), true) | (Node::Or(ids), false) => {
+                stack.extend(ids.iter().rev().map(|&i| (i, want)))
+            }
+            (Node::Implies(a, b), false) => stack.extend([(*b, false), (*a, true)]),
+            (Node::Not(a), _) => stack.push((*a, !want)),
+            _ => found.push((id, want)),
+        }
+    }
+    found
+}
+
+fn reads_only(formula: &Formula, id: FormulaId, paths: &dyn Fn(PathId) -> bool) -> bool {
+    let mut seen: FxHashSet<FormulaId> = FxHashSet::default();
+    let mut stack = vec![id];
+    while let Some(id) = stack.pop() {
+        if !seen.insert(id) {
+            continue;
+        }
+        match &formula.nodes[id] {
+            Node::Atom(expr) => {
+                let mut only = true;
+                expr.for_each_leaf(&mut |leaf| only &= leaf.paths().into_iter().flatten().all(paths));
+                if !only {
+                    return false;
+                }
+            }
+            node => stack.extend(node.children()),
+        }
+    }
+    true
+}

@@ -1,0 +1,67 @@
+//! Keeps what solvers are asked, as files that can be replayed.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use hyperplan_smt::Status;
+
+use crate::error::Error;
+
+/// The file of one process.
+pub(crate) struct Transcript {
+    file: BufWriter<File>,
+}
+
+impl Transcript {
+    /// A new file in the directory.
+    pub(crate) fn create(
+        directory: &Path,
+        solver: &str,
+        status: Option<Status>,
+    ) -> Result<Transcript, Error> {
+        let file = numbered(directory, solver)?;
+        let mut transcript = Transcript { file: BufWriter::new(file) };
+        if let Some(status) = status {
+            let status = match status {
+                Status::Sat => "sat",
+                Status::Unsat => "unsat",
+                Status::Unknown => "unknown",
+            };
+            transcript.keep(format!("(set-info :status {status})\n").as_bytes());
+        }
+        Ok(transcript)
+    }
+
+    /// Keeps a piece. A full disk must not stop the search: failures are ignored.
+    pub(crate) fn keep(&mut self, text: &[u8]) {
+        let _ = self.file.write_all(text);
+    }
+}
+
+impl Drop for Transcript {
+    fn drop(&mut self) {
+        self.keep(b"(exit)\n");
+        let _ = self.file.flush();
+    }
+}
+
+/// A new file in the directory, which is made if need be: the first number that is free.
+pub(crate) fn numbered(directory: &Path, solver: &str) -> Result<File, Error> {
+    fs::create_dir_all(directory).map_err(|source| cannot_keep(directory, source))?;
+    let name: String = solver.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    (1..=999_999_u32)
+        .find_map(|number| {
+            let path = directory.join(format!("{number:04}-{name}.smt2"));
+            match OpenOptions::new().write(true).create_new(true).open(path) {
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => None,
+                result => Some(result),
+            }
+        })
+        .unwrap_or_else(|| Err(io::ErrorKind::AlreadyExists.into()))
+        .map_err(|source| cannot_keep(directory, source))
+}
+
+pub(crate) fn cannot_keep(directory: &Path, source: io::Error) -> Error {
+    Error::Io { what: format!("cannot keep queries in {}", directory.display()), source }
+}
