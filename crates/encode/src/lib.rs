@@ -67,6 +67,8 @@ pub struct Limits {
     pub layer_states: usize,
     /// Joint states of two paths, added up likewise, beyond which they are explored one by one.
     pub pairs: usize,
+    /// Pairs of state and residual, added up over time, of a path whose runs are followed all at once.
+    pub swept: usize,
     /// Residuals of the formula beyond which pruning forgets it.
     pub residuals: usize,
     /// Cases of one universally quantified path.
@@ -79,7 +81,8 @@ impl Default for Limits {
             horizon: 100_000,
             states: 2_000_000,
             layer_states: 50_000_000,
-            pairs: 3_000_000,
+            pairs: 600_000,
+            swept: 3_000_000,
             residuals: 20_000,
             cases: 4096,
         }

@@ -63,7 +63,7 @@ pub(crate) fn sweep(sweep: &Sweep<'_, '_>, script: &mut Script) -> Option<()> {
     for time in 0..=runs.horizon {
         runs.settle(script, time, std::mem::take(&mut ways), &mut frontier);
         total += frontier.len();
-        if total > sweep.encoder.limits.pairs || runs.residuals.len() > MAX_RESIDUALS {
+        if total > sweep.encoder.limits.swept || runs.residuals.len() > MAX_RESIDUALS {
             return None;
         }
         if time < runs.horizon {
