@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Plants faults in the encoder and the search, one at a time, and expects the differential tests to catch each.
 
-Works on a copy of the tree in a temporary directory. Usage: scripts/planted-faults.py [NAME...]
+Works on a copy of the tree in a temporary directory, and builds there unless CARGO_TARGET_DIR says otherwise.
+Usage: scripts/planted-faults.py [NAME...]
 """
 
 import os
@@ -39,6 +40,9 @@ FAULTS = [
     ("no-backward-clauses", "crates/encode/src/explicit.rs",
      "clause.extend(before.get(&(state, letter)).into_iter().flatten());\n            script.clause(&clause);",
      "clause.extend(before.get(&(state, letter)).into_iter().flatten());"),
+    ("sweep-forgets-a-condition", "crates/encode/src/sweep.rs",
+     "way.push(term.negate_if(!holds));",
+     "if holds { way.push(term); }"),
     ("first-action-is-free", "crates/encode/src/atom.rs",
      "if self.time == 0 || p == q {",
      "if self.time <= 1 || p == q {"),
@@ -53,9 +57,10 @@ def catches(name, file, old, new, work):
         sys.exit(f"{name}: the text to replace is no longer in {file}")
     path.write_text(text.replace(old, new, 1))
     try:
-        environment = dict(os.environ, CARGO_TARGET_DIR=str(work / "target"))
+        environment = {"CARGO_TARGET_DIR": str(work / "target"), **os.environ}
         run = subprocess.run(
-            ["cargo", "test", "--quiet", "-p", "hyperplan-tests", "--test", "differential"],
+            ["cargo", "test", "--quiet", "-p", "hyperplan-tests", "--test", "differential",
+             "--no-default-features", "--features", "batsat", "the_embedded"],
             cwd=work, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     finally:
         path.write_text(text)

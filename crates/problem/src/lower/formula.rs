@@ -225,7 +225,7 @@ impl<'a> PathContext<'a> {
     }
 }
 
-/// Checks a number of steps: from 0 to below [`MAX_BOUND`].
+/// Checks a number of steps: from 0 to [`MAX_BOUND`].
 pub(super) fn number_of_steps(
     value: i64,
     what: &str,
@@ -234,10 +234,10 @@ pub(super) fn number_of_steps(
 ) -> Option<u32> {
     let diagnostic = if value < 0 {
         Diagnostic::error("negative-bound", span, format!("{what} is negative: {value}"))
-    } else if value >= MAX_BOUND {
+    } else if value > MAX_BOUND {
         let message = format!("{what} is too large: {value}");
         Diagnostic::error("bound-too-large", span, message)
-            .with_help(format!("it must be less than {MAX_BOUND}"))
+            .with_help(format!("it may be at most {MAX_BOUND}"))
     } else {
         return u32::try_from(value).ok();
     };

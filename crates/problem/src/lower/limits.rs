@@ -10,8 +10,8 @@ pub const MAX_DEPTH: u32 = 1_000;
 /// Most nodes of one objective or system once its definitions are expanded.
 pub const MAX_NODES: u32 = 2_000_000;
 
-/// Bounds of temporal operators and the K of `within K` must be less than this.
-pub const MAX_BOUND: i64 = 1_000_000;
+/// Bounds of temporal operators and the K of `within K` may be at most this: what the encoder takes.
+pub const MAX_BOUND: i64 = 100_000;
 
 /// Greatest absolute value at the ends of a variable's range.
 pub(crate) const MAX_RANGE: i64 = 1 << 40;
