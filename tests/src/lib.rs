@@ -4,6 +4,13 @@
 //! transitions and a tree of operators ([`model`]), made at random ([`random`]), printed as a problem file, and
 //! decided by enumerating paths ([`brute`]).
 
+use std::io::Write;
+
 pub mod brute;
 pub mod model;
 pub mod random;
+
+/// Tells the person who runs the tests.
+pub fn say(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{text}");
+}

@@ -4,6 +4,7 @@ use hyperplan_plan::{Config, Quantifiers, States, Verdict, Verified, solve};
 use hyperplan_problem::{Overrides, Problem, read};
 use hyperplan_solver::{Deadline, Spec, discover};
 use hyperplan_syntax::SourceMap;
+use hyperplan_tests::say;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -92,7 +93,7 @@ fn every_solver_agrees() {
         let found = discover().into_iter().any(|solver| solver.name == name && solver.path.is_some());
         if !found {
             assert!(!required, "{name} is missing, and HYPERPLAN_REQUIRE_SOLVERS is set");
-            eprintln!("{name} is missing: skipped");
+            say(&format!("{name} is missing: skipped"));
             continue;
         }
         let solver = Spec::from_str(name).expect("a solver that is known");

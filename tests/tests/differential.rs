@@ -10,8 +10,8 @@ use hyperplan_syntax::SourceMap;
 use hyperplan_tests::brute::{Brute, Path};
 use hyperplan_tests::model;
 use hyperplan_tests::random::{Random, problem};
+use hyperplan_tests::say;
 use hyperplan_verify::{Budget, check, decide};
-use std::io::Write;
 use std::str::FromStr;
 use std::time::Duration;
 
@@ -28,10 +28,6 @@ fn seeds(cases: u64) -> impl Iterator<Item = u64> {
     let cases = number("HYPERPLAN_CASES", cases);
     say(&format!("seed {first}, {cases} cases"));
     (0..cases).map(move |i| first.wrapping_add(i))
-}
-
-fn say(text: &str) {
-    let _ = writeln!(std::io::stderr(), "{text}");
 }
 
 fn lowered(text: &str) -> Problem {

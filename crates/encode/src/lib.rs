@@ -118,6 +118,9 @@ pub enum Error {
         /// The limit.
         limit: usize,
     },
+    /// The caller asked to stop.
+    #[error("interrupted")]
+    Interrupted,
     /// States are to be enumerated, but there are too many.
     #[error("system {system} has too many states to enumerate; use --states bitvec")]
     NotEnumerable {
@@ -145,18 +148,24 @@ pub struct Encoder<'a> {
     limits: Limits,
     horizons: TiVec<PathId, u32>,
     models: TiVec<SystemId, Option<Model>>,
+    stop: Stop<'a>,
 }
+
+/// Asked now and then while something large is built: whether to stop.
+pub type Stop<'a> = &'a dyn Fn() -> bool;
 
 impl<'a> Encoder<'a> {
     /// Prepares an objective. Without a wish, states are enumerated where the budget allows.
     ///
     /// # Errors
-    /// [`Error::HorizonTooLong`], and [`Error::NotEnumerable`] where enumeration is asked for and impossible.
+    /// [`Error::HorizonTooLong`], and [`Error::NotEnumerable`] where enumeration is asked for and impossible. What
+    /// is built later fails with [`Error::Interrupted`] soon after `stop` says so.
     pub fn new(
         problem: &'a Problem,
         objective: &'a Objective,
         wish: Option<States>,
         limits: Limits,
+        stop: Stop<'a>,
     ) -> Result<Self, Error> {
         let horizons = horizons(objective, &limits)?;
         let mut models: TiVec<SystemId, Option<Model>> = problem.systems.iter().map(|_| None).collect();
@@ -174,7 +183,7 @@ impl<'a> Encoder<'a> {
             models[path.system] = Some(Model { graph, moves: None, live: None });
         }
         let states = wish.unwrap_or(if enumerable { States::Onehot } else { States::Bitvec });
-        let mut encoder = Encoder { problem, objective, states, limits, horizons, models };
+        let mut encoder = Encoder { problem, objective, states, limits, horizons, models, stop };
         if states == States::Bitvec {
             encoder.prepare_symbolic()?;
         }
@@ -290,6 +299,28 @@ impl<'a> Encoder<'a> {
         let limit = self.limits.cases;
         let path = self.objective.paths[path].name.clone();
         if copies > limit { Err(Error::TooManyCases { path, limit }) } else { Ok(()) }
+    }
+
+    /// An error once the caller wants to stop.
+    fn go_on(&self) -> Result<(), Error> {
+        if (self.stop)() { Err(Error::Interrupted) } else { Ok(()) }
+    }
+
+    /// Whether a path took an action that could have had another outcome.
+    #[must_use]
+    pub fn picks_outcomes(&self, path: PathId, known: &Known) -> bool {
+        match known {
+            Known::Explicit(p) => p.states.iter().zip(&p.actions).any(|(&state, &action)| {
+                let letters = p.graph.successors(state).iter().map(|t| p.graph.letters[t.0 as usize].0);
+                letters.filter(|&a| a == action).count() > 1
+            }),
+            Known::Symbolic(p) => {
+                let system = self.system(path);
+                let moves = self.model(path).moves.as_deref();
+                let picks = |moves: &Moves, at: usize| moves.outcomes(system, &p.rows[at], p.actions[at]) > 1;
+                moves.is_some_and(|moves| (0..p.actions.len()).any(|at| picks(moves, at)))
+            }
+        }
     }
 
     fn model(&self, path: PathId) -> &Model {

@@ -72,7 +72,7 @@ type Joint<const N: usize> = (Residual, [StateIx; N]);
 pub(crate) fn layers<const N: usize>(question: &Question<'_, N>) -> Result<[Layers; N], Error> {
     let mut exploration = Exploration::new(question)?;
     let forward = exploration.forward()?;
-    Ok(exploration.backward(forward))
+    exploration.backward(forward)
 }
 
 /// Whether a state allows enough further steps at a time: any number in bounded mode, all that are left under
@@ -195,6 +195,7 @@ impl<'a, const N: usize> Exploration<'a, N> {
         let mut total = now.len();
         let mut moves = Vec::new();
         for time in 1..=self.horizon {
+            self.question.encoder.go_on()?;
             self.note(&now, time - 1);
             if self.residuals.len() > self.question.encoder.limits.residuals && self.forget == u32::MAX {
                 self.forget = time;
@@ -240,11 +241,12 @@ impl<'a, const N: usize> Exploration<'a, N> {
     }
 
     /// Drops the joint states from which the end cannot be reached, and forgets the residuals.
-    fn backward(&mut self, forward: Vec<Vec<Joint<N>>>) -> [Layers; N] {
+    fn backward(&mut self, forward: Vec<Vec<Joint<N>>>) -> Result<[Layers; N], Error> {
         let mut layers: [Layers; N] = std::array::from_fn(|_| Layers { at: Vec::new() });
         let mut later: Option<FxHashSet<Joint<N>>> = None;
         let mut moves = Vec::new();
         for (time, mut joints) in (0u32..).zip(forward).collect::<Vec<_>>().into_iter().rev() {
+            self.question.encoder.go_on()?;
             joints.retain(|&(residual, states)| {
                 self.in_slack(residual, time)
                     && later.as_ref().is_none_or(|later| {
@@ -267,7 +269,7 @@ impl<'a, const N: usize> Exploration<'a, N> {
             layers.at.reverse();
             layers.at.truncate(self.question.encoder.horizon(self.question.paths[at]) as usize + 1);
         }
-        layers
+        Ok(layers)
     }
 
     fn too_large(&self) -> Error {

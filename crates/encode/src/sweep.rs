@@ -66,6 +66,9 @@ pub(crate) fn sweep(sweep: &Sweep<'_, '_>, script: &mut Script) -> Option<()> {
         if total > sweep.encoder.limits.swept || runs.residuals.len() > MAX_RESIDUALS {
             return None;
         }
+        if (sweep.encoder.stop)() {
+            return None;
+        }
         if time < runs.horizon {
             runs.advance(script, time + 1, &frontier, &mut ways)?;
         }

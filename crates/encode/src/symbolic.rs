@@ -93,6 +93,15 @@ impl Moves {
             .find_map(|at| Some((at as u32, self.moves[own[at]].apply(system, from)?)))
     }
 
+    /// How many different states an action can lead to.
+    pub(crate) fn outcomes(&self, system: &System, from: &[i64], action: ActionId) -> usize {
+        let mut next: Vec<Row> =
+            self.of_action(action).filter_map(|at| self.moves[at].apply(system, from)).collect();
+        next.sort_unstable();
+        next.dedup();
+        next.len()
+    }
+
     /// The number, among the moves of its action, of a move that makes a step.
     pub(crate) fn number_of(
         &self,

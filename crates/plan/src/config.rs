@@ -189,11 +189,12 @@ pub enum Error {
 }
 
 impl Error {
-    /// The exit code of the command: 2 for what is not supported or too large as asked, 4 for a solver's fault, 5
-    /// for ours.
+    /// The exit code of the command: 2 for what is not supported or too large as asked, 3 for what was
+    /// interrupted, 4 for a solver's fault, 5 for ours.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
+            Error::Encode(encode::Error::Interrupted) => 3,
             Error::Unsupported(_) | Error::Encode(_) => 2,
             Error::Solver(error) if error.is_unsupported() => 2,
             Error::Solver(_) | Error::WrongModel { .. } => 4,

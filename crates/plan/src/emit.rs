@@ -32,7 +32,8 @@ impl Emitted {
 /// # Errors
 /// What is not supported, and what is too large.
 pub fn emit(problem: &Problem, objective: &Objective, config: &EmitConfig) -> Result<Emitted, Error> {
-    let encoder = Encoder::new(problem, objective, config.states.wish(), Limits::default())?;
+    let stop = || config.deadline.passed();
+    let encoder = Encoder::new(problem, objective, config.states.wish(), Limits::default(), &stop)?;
     let mut empty = None;
     for path in objective.paths.keys() {
         match encoder.has_path(path) {
@@ -53,7 +54,7 @@ pub fn emit(problem: &Problem, objective: &Objective, config: &EmitConfig) -> Re
     }
     let Some(quantifier) = empty else { return build(&encoder, config) };
     let decided = decided(objective, quantifier);
-    build(&Encoder::new(problem, &decided, config.states.wish(), Limits::default())?, config)
+    build(&Encoder::new(problem, &decided, config.states.wish(), Limits::default(), &stop)?, config)
 }
 
 fn build(encoder: &Encoder<'_>, config: &EmitConfig) -> Result<Emitted, Error> {

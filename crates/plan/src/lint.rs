@@ -1,10 +1,10 @@
 //! Warnings about objectives and systems that hold, or fail, for no good reason.
 
 use crate::cegis::Cegis;
-use crate::config::{Config, Quantifiers, States};
+use crate::config::{Config, Error, Quantifiers, States};
 use crate::oracle::{Oracle, Stop};
 use crate::prepare::{no_dead_ends, without_paths};
-use hyperplan_encode::{Encoder, Goal, Graph, Limits, inspect};
+use hyperplan_encode::{self as encode, Encoder, Goal, Graph, Limits, inspect};
 use hyperplan_problem::{
     FormulaId, Node, Objective, PathVar, Problem, Quantifier, System, SystemId, display,
 };
@@ -95,7 +95,7 @@ pub fn lint(problem: &Problem, objective: &Objective, deadline: &Deadline) -> Ve
                     "this part of the objective constrains nothing: the rest of the objective implies it";
                 found.push(Diagnostic::warning("vacuous", span, message));
             }
-            Err(Stop::Unknown(_)) => {
+            Err(Stop::Unknown(_) | Stop::Error(Error::Encode(encode::Error::Interrupted))) => {
                 let message =
                     "it is undecided, within the time for it, whether this part constrains anything";
                 found.push(Diagnostic::warning("vacuity-undecided", span, message));
@@ -173,7 +173,8 @@ fn possible(
         memory_mib: None,
         queries: None,
     };
-    let encoder = Encoder::new(problem, &question, None, Limits::default())?;
+    let stop = || config.deadline.passed();
+    let encoder = Encoder::new(problem, &question, None, Limits::default(), &stop)?;
     let mut oracle = Oracle::new(&config);
     no_dead_ends(&encoder, &mut oracle)?;
     if without_paths(&encoder, &mut oracle)?.is_some() {

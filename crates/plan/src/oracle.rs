@@ -2,7 +2,7 @@
 
 use crate::config::{Config, Error};
 use hyperplan_smt::{Model, Script, Term, first_violated};
-use hyperplan_solver::{Answer, Identity, Options, Session, Spec, open};
+use hyperplan_solver::{self as solver, Answer, Identity, Options, Session, Spec, open};
 use std::time::Instant;
 
 /// Why a search ended without an answer.
@@ -69,7 +69,7 @@ impl<'c> Oracle<'c> {
     }
 
     fn late(&self) -> String {
-        if self.config.deadline.cancelled() { "interrupted".into() } else { "timeout".into() }
+        self.config.deadline.reason().to_owned()
     }
 
     /// The values of the symbols that describe the wanted paths. The model of an external solver is evaluated: one
@@ -84,6 +84,9 @@ impl<'c> Oracle<'c> {
         let start = Instant::now();
         let values = dialogue.session.values(script, &symbols);
         self.solving += start.elapsed().as_secs_f64();
+        if let Err(solver::Error::Deadline { .. }) = values {
+            return Err(Stop::Unknown(self.late()));
+        }
         let mut model = Model::new();
         for (symbol, value) in symbols.into_iter().zip(values?) {
             model.insert(symbol, value);

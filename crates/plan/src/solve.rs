@@ -5,7 +5,7 @@ use crate::config::{Config, Error, Outcome, Quantifiers, Seconds, States, Verdic
 use crate::direct;
 use crate::oracle::{Oracle, Stop};
 use crate::prepare::{blocks, decided, no_dead_ends, without_paths};
-use hyperplan_encode::{Encoder, Goal, Limits};
+use hyperplan_encode::{self as encode, Encoder, Goal, Limits};
 use hyperplan_problem::{Objective, PathId, Problem, Quantifier, Strategy};
 use hyperplan_solver::Spec;
 use hyperplan_verify as verify;
@@ -21,7 +21,8 @@ const SLACKS: [Option<u32>; 2] = [Some(4), None];
 /// What is not supported, failures of solvers, and answers that fail verification; being undecided is no error.
 pub fn solve(problem: &Problem, objective: &Objective, config: &Config) -> Result<Outcome, Error> {
     let start = Instant::now();
-    let encoder = Encoder::new(problem, objective, config.states.wish(), Limits::default())?;
+    let stop = || config.deadline.passed();
+    let encoder = Encoder::new(problem, objective, config.states.wish(), Limits::default(), &stop)?;
     let mut oracle = Oracle::new(config);
     let mut outcome = unknown(objective, &encoder, config);
     let vacuous = no_dead_ends(&encoder, &mut oracle).and_then(|()| without_paths(&encoder, &mut oracle));
@@ -35,7 +36,7 @@ pub fn solve(problem: &Problem, objective: &Objective, config: &Config) -> Resul
                 problem.systems[var.system].name, var.name
             ));
             let decided = decided(objective, var.quantifier);
-            let encoder = Encoder::new(problem, &decided, config.states.wish(), Limits::default())?;
+            let encoder = Encoder::new(problem, &decided, config.states.wish(), Limits::default(), &stop)?;
             search(&encoder, config, &mut oracle, &mut outcome)
         }
     };
@@ -44,12 +45,16 @@ pub fn solve(problem: &Problem, objective: &Objective, config: &Config) -> Resul
         Seconds { encode: (total - oracle.solving).max(0.0), solve: oracle.solving, verify: 0.0 };
     outcome.solver = oracle.identity();
     match answer {
+        Err(Stop::Error(Error::Encode(encode::Error::Interrupted))) => {
+            outcome.reason = Some(config.deadline.reason().to_owned());
+            return Ok(outcome);
+        }
         Err(Stop::Error(error)) => return Err(error),
         Err(Stop::Unknown(reason)) => {
             outcome.reason = Some(reason);
             return Ok(outcome);
         }
-        Ok(found) => conclude(problem, objective, found.as_ref(), &mut outcome),
+        Ok(found) => conclude(&encoder, found.as_ref(), &mut outcome),
     }
     if config.verify {
         let start = Instant::now();
@@ -149,7 +154,8 @@ fn leading(objective: &Objective) -> Quantifier {
 }
 
 /// The verdict, and the witness as traces.
-fn conclude(problem: &Problem, objective: &Objective, found: Option<&Assignment>, outcome: &mut Outcome) {
+fn conclude(encoder: &Encoder<'_>, found: Option<&Assignment>, outcome: &mut Outcome) {
+    let (problem, objective) = (encoder.problem, encoder.objective);
     let exists = leading(objective) == Quantifier::Exists;
     outcome.verdict = if found.is_some() == exists { Verdict::Realizable } else { Verdict::Unrealizable };
     outcome.witness = found.map(|known| {
@@ -157,6 +163,15 @@ fn conclude(problem: &Problem, objective: &Objective, found: Option<&Assignment>
             let system = &problem.systems[objective.paths[path].system];
             known[usize::from(path)].as_ref().map(|known| known.trace(path, system))
         };
+        for path in objective.leading_block() {
+            let picked = known[usize::from(path)].as_ref().is_some_and(|k| encoder.picks_outcomes(path, k));
+            if exists && picked {
+                outcome.notes.push(format!(
+                    "{0} relies on outcomes that its actions might not have; `exists {0}` picks them too",
+                    objective.paths[path].name
+                ));
+            }
+        }
         Strategy { traces: objective.leading_block().into_iter().filter_map(trace).collect() }
     });
 }
