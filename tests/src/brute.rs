@@ -18,7 +18,7 @@ pub struct Brute<'a> {
     edges: Vec<(usize, usize, usize)>,
     live: Vec<bool>,
     steps: usize,
-    /// All paths of [`Brute::steps`] steps.
+    /// All paths, each as long as its variable needs.
     pub paths: Vec<Path>,
 }
 

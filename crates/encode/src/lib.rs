@@ -30,7 +30,7 @@ mod value;
 
 pub use explicit::FixedPath;
 pub use goal::Goal;
-pub use graph::{Graph, LIVE, Letter, StateIx};
+pub use graph::{Graph, LIVE, Letter, StateIx, TooLarge};
 pub use inputs::{Inputs, Move, Start};
 pub use inspect::{Findings, inspect};
 pub use path::{Instance, Known, Path};
