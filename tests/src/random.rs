@@ -65,7 +65,9 @@ fn attempt(random: &mut Random) -> Problem {
     let depth = 2 + random.below(3);
     let mut formulas = Formulas { random, system: &system, paths, within: within.is_some() };
     let formula = formulas.formula(depth, horizon);
-    let formula = if paths > 1 && random.once_in(2) {
+    let formula = if paths > 1 && random.once_in(4) {
+        tied(random, &system, paths, horizon)
+    } else if paths > 1 && random.once_in(2) {
         // Each path with a part of its own makes horizons unequal.
         let mut parts = vec![formula];
         for path in 0..paths {
@@ -79,6 +81,19 @@ fn attempt(random: &mut Random) -> Problem {
         formula
     };
     Problem { system, exists, within, look: horizon, formula }
+}
+
+/// The shape of robustness: a path does something, and another that takes the same actions does something too.
+fn tied(random: &mut Random, system: &System, paths: usize, horizon: u32) -> Formula {
+    let last = paths - 1;
+    let mut own = |path: usize| {
+        let formulas = Formulas { random: &mut *random, system, paths: 1, within: false };
+        Own { path, formulas }.formula(horizon)
+    };
+    let (mine, theirs) = (own(0), own(last));
+    let same = Formula::Globally(Some((0, horizon)), Box::new(Formula::Atom(Atom::SameAction(0, last))));
+    let formula = Formula::And(vec![mine, Formula::Implies(Box::new(same), Box::new(theirs))]);
+    if random.once_in(4) { Formula::Not(Box::new(formula)) } else { formula }
 }
 
 fn system(random: &mut Random) -> System {
