@@ -346,9 +346,9 @@ fn gather(terms: &mut Terms, mut pairs: Vec<(StateIx, Term)>) -> Layer {
 /// Builds instances of a universally quantified path, sharing the steps that instances have in common.
 #[derive(Default)]
 pub(crate) struct Instances {
-    /// The layer that follows a layer (by address) under a move at a time. The layers are kept alive here, so that
-    /// addresses stay unique.
-    next: FxHashMap<(usize, Move, usize), Shared>,
+    /// For a path variable (each is pruned in its own way), the layer that follows a layer (by address) under a move
+    /// at a time. The layers are kept alive here, so that addresses stay unique.
+    next: FxHashMap<(PathId, usize, Move, usize), Shared>,
 }
 
 /// A layer, what follows it, and the step between.
@@ -357,6 +357,7 @@ type Shared = (Rc<Layer>, Rc<Layer>, Rc<Step>);
 /// What an instance is built from.
 pub(crate) struct Building<'b, 'n> {
     pub(crate) script: &'b mut Script,
+    pub(crate) path: PathId,
     /// Names of its symbols; fresh for each instance.
     pub(crate) names: &'b Names<'n>,
     pub(crate) graph: &'b Rc<Graph>,
@@ -386,7 +387,7 @@ impl Instances {
         let mut path = ExplicitPath { graph: graph.clone(), layers: vec![first], steps: Vec::new() };
         for (time, &movement) in inputs.moves.iter().enumerate() {
             let here = path.layers[time].clone();
-            let key = (Rc::as_ptr(&here) as usize, movement, time);
+            let key = (building.path, Rc::as_ptr(&here) as usize, movement, time);
             let shared = self.next.entry(key).or_insert_with(|| {
                 let (next, step) = building.step(&here, movement, time);
                 (here, next, step)

@@ -229,7 +229,8 @@ impl<'e, 'a> Query<'e, 'a> {
                     env.iter().map(|p| p.as_deref().and_then(explicit)).collect();
                 let names = self.names(path);
                 let script = &mut self.script;
-                let mut building = Building { script, names: &names, graph, layers: &layers, env: &others };
+                let mut building =
+                    Building { script, path, names: &names, graph, layers: &layers, env: &others };
                 let (path, guard) = self.instances.build(&mut building, inputs);
                 (Shape::Explicit(path), guard)
             }
