@@ -346,13 +346,14 @@ fn gather(terms: &mut Terms, mut pairs: Vec<(StateIx, Term)>) -> Layer {
 /// Builds instances of a universally quantified path, sharing the steps that instances have in common.
 #[derive(Default)]
 pub(crate) struct Instances {
-    /// For a path variable (each is pruned in its own way), the layer that follows a layer (by address) under a move
-    /// at a time. The layers are kept alive here, so that addresses stay unique.
-    next: FxHashMap<(PathId, usize, Move, usize), Shared>,
+    /// For a path variable (each is pruned in its own way), the layer that follows a layer under a move at a time,
+    /// where the move follows a step of another path. Layers and steps count by address, as there are several
+    /// instances of a path; they are kept alive here, so that addresses stay unique.
+    next: FxHashMap<(PathId, usize, Move, usize, usize), Shared>,
 }
 
-/// A layer, what follows it, and the step between.
-type Shared = (Rc<Layer>, Rc<Layer>, Rc<Step>);
+/// A layer, what follows it, the step between, and the step of another path that it follows.
+type Shared = (Rc<Layer>, Rc<Layer>, Rc<Step>, Option<Rc<Step>>);
 
 /// What an instance is built from.
 pub(crate) struct Building<'b, 'n> {
@@ -387,10 +388,17 @@ impl Instances {
         let mut path = ExplicitPath { graph: graph.clone(), layers: vec![first], steps: Vec::new() };
         for (time, &movement) in inputs.moves.iter().enumerate() {
             let here = path.layers[time].clone();
-            let key = (building.path, Rc::as_ptr(&here) as usize, movement, time);
+            let followed = match movement {
+                Move::Same(other) | Move::SameAction(other, _) => {
+                    Some(at(building.env, other).steps[time].clone())
+                }
+                Move::Act(..) => None,
+            };
+            let address = followed.as_ref().map_or(0, |step| Rc::as_ptr(step) as usize);
+            let key = (building.path, Rc::as_ptr(&here) as usize, movement, address, time);
             let shared = self.next.entry(key).or_insert_with(|| {
                 let (next, step) = building.step(&here, movement, time);
-                (here, next, step)
+                (here, next, step, followed)
             });
             path.layers.push(shared.1.clone());
             path.steps.push(shared.2.clone());
