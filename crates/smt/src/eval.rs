@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use crate::rational::Rational;
 use crate::script::Script;
 use crate::term::{Op, Sort, Term};
 use crate::terms::{Terms, View};
@@ -54,6 +55,7 @@ pub(crate) fn apply(op: Op, sort: Sort, args: &[Value], numbers: &[u32]) -> Opti
         },
         // The divisor is positive: Euclidean division is SMT-LIB's.
         Op::IntDiv => Some(Value::Int(args[0].as_signed()?.checked_div_euclid(args[1].as_signed()?)?)),
+        Op::ToReal => Some(Value::Real(Rational::new(args[0].as_signed()?, 1)?)),
         Op::IntMod => Some(Value::Int(args[0].as_signed()?.checked_rem_euclid(args[1].as_signed()?)?)),
     }
 }

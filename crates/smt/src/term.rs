@@ -144,6 +144,8 @@ pub enum Op {
     IntDiv,
     /// Remainder, never negative, by a positive constant, which comes second.
     IntMod,
+    /// An integer as a real.
+    ToReal,
     /// Universal quantification: the bound variables, then the body.
     Forall,
 }
@@ -182,6 +184,7 @@ impl Op {
             Op::Le => ("<=", Some(0)),
             Op::IntDiv => ("div", Some(0)),
             Op::IntMod => ("mod", Some(0)),
+            Op::ToReal => ("to_real", Some(0)),
             Op::Forall => ("forall", Some(0)),
         }
     }

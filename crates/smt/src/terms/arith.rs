@@ -85,6 +85,11 @@ impl Terms {
         self.arith(Op::IntMod, Sort::Int, Sort::Int, &[t, divisor])
     }
 
+    /// An integer as a real.
+    pub fn to_real(&mut self, t: Term) -> Term {
+        self.arith(Op::ToReal, Sort::Int, Sort::Real, &[t])
+    }
+
     fn le(&mut self, sort: Sort, a: Term, b: Term) -> Term {
         if a == b {
             return self.arith_checked(sort, Term::TRUE, a);

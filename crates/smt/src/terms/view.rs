@@ -52,7 +52,8 @@ impl Terms {
             | Op::Mul
             | Op::Le
             | Op::IntDiv
-            | Op::IntMod => View::App(op, args),
+            | Op::IntMod
+            | Op::ToReal => View::App(op, args),
         }
     }
 
