@@ -63,6 +63,7 @@ fn path(system: &model::System, objective: &Problem, trace: &hyperplan_problem::
         Value::Bool(b) => usize::from(*b),
         Value::Int(n) => usize::try_from(*n).expect("values are few and small"),
         Value::Enum(i) => usize::try_from(*i).expect("values are few and small"),
+        Value::Real(_) => panic!("no variable is real"),
     };
     let state = |values: &hyperplan_problem::State| {
         system.state(&values.iter().map(index).collect::<Vec<_>>()).expect("a state of the system")
@@ -175,7 +176,10 @@ impl Answers {
         let expected = brute.verdict();
         let typed = lowered(&text);
         for &quantifiers in ways {
-            for states in [States::Onehot, States::Bitvec] {
+            for states in [States::Onehot, States::Bitvec, States::Int] {
+                if (states, solver) == (States::Int, &Spec::Builtin) {
+                    continue;
+                }
                 match answer(&typed, &typed.objectives[0], solver, quantifiers, states) {
                     Ok(Outcome { verdict: Verdict::Unknown, .. }) => self.unknown += 1,
                     Err(error) if error.exit_code() == 2 => self.unsupported += 1,

@@ -98,7 +98,13 @@ fn is_truth(system_of: &dyn Fn(PathId, Leaf) -> bool, expr: &Expr<PathLeaf>) -> 
         | Expr::Iff(..)
         | Expr::Compare(..)
         | Expr::Member(..) => true,
-        Expr::Const(_) | Expr::Add(_) | Expr::Mul(..) | Expr::Div(..) | Expr::Mod(..) => false,
+        Expr::Const(_)
+        | Expr::Add(_)
+        | Expr::Mul(..)
+        | Expr::Scale(..)
+        | Expr::ToReal(_)
+        | Expr::Div(..)
+        | Expr::Mod(..) => false,
         Expr::If(_, a, _) => is_truth(system_of, a),
         Expr::Leaf(PathLeaf::State(p, leaf)) => system_of(*p, *leaf),
         Expr::Leaf(_) => true,

@@ -1,14 +1,15 @@
-//! Expressions evaluated on concrete states, as the encoder sees them: a state is a row of integers (Booleans are
-//! 0 and 1, enumeration values their position).
+//! Expressions evaluated on concrete states: of a finite system as a row of integers (Booleans are 0 and 1,
+//! enumeration values their position), which is fast; of any system as values.
 
 use hyperplan_problem::{Comparison, Expr, Leaf, System, Type, Value};
 
-/// A value as an integer.
+/// A value of a finite type as an integer.
 pub(crate) fn code(value: Value) -> i64 {
     match value {
         Value::Bool(b) => i64::from(b),
         Value::Int(i) => i,
         Value::Enum(i) => i64::from(i),
+        Value::Real(_) => unreachable!("finite systems have no reals"),
     }
 }
 
@@ -16,17 +17,18 @@ pub(crate) fn code(value: Value) -> i64 {
 pub(crate) fn decode(ty: &Type, code: i64) -> Value {
     match ty {
         Type::Bool => Value::Bool(code != 0),
-        Type::Range { .. } => Value::Int(code),
+        Type::Range { .. } | Type::Int | Type::Real => Value::Int(code),
         Type::Enum(_) => Value::Enum(u32::try_from(code).unwrap_or(0)),
     }
 }
 
-/// The least and greatest code of a type.
-pub(crate) fn bounds(ty: &Type) -> (i64, i64) {
+/// The least and greatest code of a finite type.
+pub(crate) fn bounds(ty: &Type) -> Option<(i64, i64)> {
     match ty {
-        Type::Bool => (0, 1),
-        Type::Range { lo, hi } => (*lo, *hi),
-        Type::Enum(values) => (0, values.len() as i64 - 1),
+        Type::Bool => Some((0, 1)),
+        Type::Range { lo, hi } => Some((*lo, *hi)),
+        Type::Enum(values) => Some((0, values.len() as i64 - 1)),
+        Type::Int | Type::Real => None,
     }
 }
 
@@ -51,6 +53,7 @@ pub(crate) fn eval<L>(expr: &Expr<L>, leaf: &mut impl FnMut(&L) -> i64) -> i64 {
         Expr::Mul(c, a) => c * eval(a, leaf),
         Expr::Div(a, c) => eval(a, leaf).div_euclid(*c),
         Expr::Mod(a, c) => eval(a, leaf).rem_euclid(*c),
+        Expr::Scale(..) | Expr::ToReal(_) => unreachable!("finite systems have no reals"),
         Expr::If(c, a, b) => {
             if eval(c, leaf) != 0 {
                 eval(a, leaf)
@@ -71,4 +74,20 @@ pub(crate) fn eval_in(system: &System, expr: &Expr<Leaf>, state: &[i64]) -> i64 
         Leaf::Var(v) => state[usize::from(v)],
         Leaf::Label(l) => eval_in(system, &system.labels[l].expr, state),
     })
+}
+
+/// The value of an expression over one system in a state; `None` where a number does not fit into 64 bits.
+pub(crate) fn value_in(system: &System, expr: &Expr<Leaf>, state: &[Value]) -> Option<Value> {
+    expr.evaluate(&mut |leaf| match *leaf {
+        Leaf::Var(v) => Some(state[usize::from(v)]),
+        Leaf::Label(l) => value_in(system, &system.labels[l].expr, state),
+    })
+}
+
+/// Whether an expression over one system holds in a state; see [`value_in`].
+pub(crate) fn holds_in(system: &System, expr: &Expr<Leaf>, state: &[Value]) -> Option<bool> {
+    match value_in(system, expr, state)? {
+        Value::Bool(holds) => Some(holds),
+        _ => None,
+    }
 }

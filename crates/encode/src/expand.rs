@@ -184,7 +184,7 @@ impl<'a> Search<'a> {
             }
             if length == self.horizon {
                 let start = Start::State(self.start.unwrap_or(0));
-                self.found.push(Inputs { start, moves: self.moves.clone() });
+                self.found.push(Inputs { start, moves: self.moves.clone(), values: Vec::new() });
                 continue;
             }
             let time = length as u32 + 1;
@@ -222,9 +222,9 @@ impl<'a> Search<'a> {
                 for &(letter, next) in self.graph.successors(state) {
                     let (action, mut number) = self.graph.letters[letter as usize];
                     if let Some(moves) = self.symbolic {
-                        let (from, to) = (self.graph.row(state), self.graph.row(next));
-                        number =
-                            moves.number_of(self.encoder.system(self.path), from, action, to).unwrap_or(0);
+                        let system = self.encoder.system(self.path);
+                        let (from, to) = (self.graph.state(system, state), self.graph.state(system, next));
+                        number = moves.number_of(system, &from, action, &to).unwrap_or(0);
                     }
                     branches.push((Move::Act(action, number), Some(next)));
                 }

@@ -112,6 +112,7 @@ impl Names<'_> {
                 (Value::Bool(b), _) => name.push_str(&format!(".{b}")),
                 (Value::Int(i), _) => name.push_str(&format!(".{i}")),
                 (Value::Enum(at), _) => name.push_str(&format!(".{at}")),
+                (Value::Real(r), _) => name.push_str(&format!(".{r}")),
             }
         }
         name

@@ -1,11 +1,11 @@
 //! From a counterexample to the instance that it stands for.
 
+use crate::Encoder;
 use crate::explicit::FixedPath;
 use crate::inputs::{Inputs, Move, Start};
 use crate::path::{Instance, Known};
-use crate::symbolic::FixedRows;
-use crate::{Encoder, Row};
-use hyperplan_problem::PathId;
+use crate::symbolic::{FixedRows, Moves};
+use hyperplan_problem::{PathId, State};
 use std::rc::Rc;
 
 /// The inputs of a path, in terms of paths before it where the objective compares them and they agree. Under the
@@ -31,7 +31,7 @@ pub(crate) fn generalize(
                 .find(|(_, o)| Rc::ptr_eq(&o.graph, &own.graph) && o.states[0] == own.states[0])
                 .map_or(Start::State(own.states[0]), |(p, _)| Start::Same(p));
             let moves = (0..own.letters.len()).map(|time| explicit_move(own, &tied, time)).collect();
-            Instance::Explicit(Inputs { start, moves })
+            Instance::Explicit(Inputs { start, moves, values: Vec::new() })
         }
         Known::Symbolic(own) => {
             let other = |p: PathId| match before[usize::from(p)].as_ref() {
@@ -39,7 +39,7 @@ pub(crate) fn generalize(
                 _ => None,
             };
             let tied: Vec<(PathId, &FixedRows)> = tied.into_iter().filter_map(other).collect();
-            let start: Start<Row> = alike
+            let start: Start<State> = alike
                 .into_iter()
                 .filter_map(other)
                 .find(|(_, o)| o.rows[0] == own.rows[0])
@@ -53,7 +53,9 @@ pub(crate) fn generalize(
                     }
                 })
                 .collect();
-            Instance::Symbolic(Inputs { start, moves })
+            let open = encoder.model(path).moves.as_deref().is_some_and(Moves::has_inputs);
+            let values = if open { own.rows[1..].to_vec() } else { Vec::new() };
+            Instance::Symbolic(Inputs { start, moves, values })
         }
     }
 }

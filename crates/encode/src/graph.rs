@@ -156,10 +156,10 @@ impl Packing {
             .vars
             .iter()
             .map(|var| {
-                let (lo, hi) = bounds(&var.ty);
-                (lo, (hi - lo) as u128 + 1)
+                let (lo, hi) = bounds(&var.ty)?;
+                Some((lo, (hi - lo) as u128 + 1))
             })
-            .collect();
+            .collect::<Option<_>>()?;
         radix.iter().try_fold(1u128, |product, (_, n)| product.checked_mul(*n))?;
         Some(Packing { radix })
     }
@@ -216,7 +216,7 @@ impl Explorer<'_> {
         if tests[0].iter().any(|e| eval_in(system, e, &[]) == 0) {
             return Ok(initial);
         }
-        let types: Vec<(i64, i64)> = system.vars.iter().map(|v| bounds(&v.ty)).collect();
+        let types: Vec<(i64, i64)> = system.vars.iter().filter_map(|v| bounds(&v.ty)).collect();
         let mut row: Vec<i64> = Vec::with_capacity(self.width);
         let mut visited = 0usize;
         // Depth-first over prefixes; `row` holds the current prefix.
@@ -317,7 +317,7 @@ pub(crate) fn update_values_unclipped(system: &System, update: &Update, row: &[i
     match update {
         Update::Assign(e) => vec![eval_in(system, e, row)],
         Update::OneOf(es) => es.iter().map(|e| eval_in(system, e, row)).collect(),
-        Update::Within(lo, hi) => vec![*lo, *hi],
+        Update::Within(lo, hi) => vec![eval_in(system, lo, row), eval_in(system, hi, row)],
     }
 }
 
@@ -326,8 +326,9 @@ fn update_values(system: &System, var: VarId, update: &Update, row: &[i64]) -> V
     match update {
         Update::Assign(_) | Update::OneOf(_) => update_values_unclipped(system, update, row),
         Update::Within(lo, hi) => {
-            let (least, greatest) = bounds(&system.vars[var].ty);
-            ((*lo).max(least)..=(*hi).min(greatest)).collect()
+            let (lo, hi) = (eval_in(system, lo, row), eval_in(system, hi, row));
+            let (least, greatest) = bounds(&system.vars[var].ty).unwrap_or((lo, hi));
+            (lo.max(least)..=hi.min(greatest)).collect()
         }
     }
 }

@@ -33,4 +33,7 @@ pub struct Inputs<S> {
     pub start: Start<S>,
     /// Its steps.
     pub moves: Vec<Move>,
+    /// For each step, a state with the values of what its update leaves open; empty where a system has no such
+    /// updates.
+    pub values: Vec<S>,
 }

@@ -59,7 +59,7 @@ fn clauses(system: &System, state: StateIx, row: &[i64], findings: &mut Findings
 
 fn leaves_range(system: &System, clause: usize, row: &[i64]) -> bool {
     system.clauses[clause].updates.iter().any(|(var, update)| {
-        let (lo, hi) = bounds(&system.vars[*var].ty);
+        let Some((lo, hi)) = bounds(&system.vars[*var].ty) else { return false };
         update_values_unclipped(system, update, row).iter().any(|v| !(lo..=hi).contains(v))
     })
 }

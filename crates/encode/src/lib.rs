@@ -54,6 +54,8 @@ pub enum States {
     Onehot,
     /// A bit-vector for each variable.
     Bitvec,
+    /// An integer or real for each variable.
+    Int,
 }
 
 /// Budgets of the encoding.
@@ -127,6 +129,12 @@ pub enum Error {
         /// The system.
         system: String,
     },
+    /// A system has integers or reals without bounds.
+    #[error("system {system} has variables without bounds, which takes --states int")]
+    Unbounded {
+        /// The system.
+        system: String,
+    },
 }
 
 /// What is known of one system.
@@ -169,12 +177,16 @@ impl<'a> Encoder<'a> {
     ) -> Result<Self, Error> {
         let horizons = horizons(objective, &limits)?;
         let mut models: TiVec<SystemId, Option<Model>> = problem.systems.iter().map(|_| None).collect();
-        let mut enumerable = true;
+        let (mut enumerable, mut finite) = (true, true);
         for path in &objective.paths {
             if models[path.system].is_some() {
                 continue;
             }
             let system = &problem.systems[path.system];
+            if !system.is_finite() && wish.is_some_and(|wish| wish != States::Int) {
+                return Err(Error::Unbounded { system: system.name.clone() });
+            }
+            finite &= system.is_finite();
             let graph = Graph::explore(system, limits.states).ok().map(Rc::new);
             if graph.is_none() && wish == Some(States::Onehot) {
                 return Err(Error::NotEnumerable { system: system.name.clone() });
@@ -182,9 +194,13 @@ impl<'a> Encoder<'a> {
             enumerable &= graph.is_some();
             models[path.system] = Some(Model { graph, moves: None, live: None });
         }
-        let states = wish.unwrap_or(if enumerable { States::Onehot } else { States::Bitvec });
+        let states = wish.unwrap_or(match (finite, enumerable) {
+            (false, _) => States::Int,
+            (true, true) => States::Onehot,
+            (true, false) => States::Bitvec,
+        });
         let mut encoder = Encoder { problem, objective, states, limits, horizons, models, stop };
-        if states == States::Bitvec {
+        if states != States::Onehot {
             encoder.prepare_symbolic()?;
         }
         Ok(encoder)
@@ -193,7 +209,7 @@ impl<'a> Encoder<'a> {
     fn prepare_symbolic(&mut self) -> Result<(), Error> {
         for (system, model) in self.problem.systems.iter().zip(self.models.iter_mut()) {
             let Some(model) = model else { continue };
-            model.moves = Some(Rc::new(Moves::new(system)?));
+            model.moves = Some(Rc::new(Moves::new(system, self.states)?));
             if let (Some(graph), Mode::Bounded) = (&model.graph, self.objective.mode)
                 && !graph.all_live()
             {
@@ -271,21 +287,25 @@ impl<'a> Encoder<'a> {
     /// reach the goal.
     ///
     /// # Errors
-    /// [`Error::TooManyCases`] beyond the limit; [`Error::NotEnumerable`] where states were not enumerated.
+    /// [`Error::TooManyCases`] beyond the limit, and where states were not enumerated.
     pub fn cases(&self, path: PathId, goal: &Goal) -> Result<Vec<Instance>, Error> {
-        let graph = self
-            .graph(path)
-            .ok_or_else(|| Error::NotEnumerable { system: self.system(path).name.clone() })?;
+        let Some(graph) = self.graph(path) else {
+            return self.allow_cases(path, usize::MAX).map(|()| Vec::new());
+        };
         let symbolic = self.model(path).moves.as_deref();
+        if symbolic.is_some_and(Moves::has_inputs) {
+            return self.allow_cases(path, usize::MAX).map(|()| Vec::new());
+        }
         let cases = expand::cases(self, graph, path, goal, symbolic)?;
         let instance = |inputs: Inputs<StateIx>| match symbolic {
             None => Instance::Explicit(inputs),
             Some(_) => Instance::Symbolic(Inputs {
                 start: match inputs.start {
-                    Start::State(state) => Start::State(graph.row(state).into()),
+                    Start::State(state) => Start::State(graph.state(self.system(path), state)),
                     Start::Same(path) => Start::Same(path),
                 },
                 moves: inputs.moves,
+                values: Vec::new(),
             }),
         };
         Ok(cases.into_iter().map(instance).collect())
@@ -317,7 +337,7 @@ impl<'a> Encoder<'a> {
             Known::Symbolic(p) => {
                 let system = self.system(path);
                 let moves = self.model(path).moves.as_deref();
-                let picks = |moves: &Moves, at: usize| moves.outcomes(system, &p.rows[at], p.actions[at]) > 1;
+                let picks = |moves: &Moves, at: usize| moves.has_outcomes(system, &p.rows[at], p.actions[at]);
                 moves.is_some_and(|moves| (0..p.actions.len()).any(|at| picks(moves, at)))
             }
         }

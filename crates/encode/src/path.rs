@@ -1,6 +1,6 @@
 //! The terms of one path, however its states are written.
 
-use crate::eval::{code, decode};
+use crate::eval::code;
 use crate::explicit::{ExplicitPath, FixedPath};
 use crate::graph::StateIx;
 use crate::inputs::{Inputs, Move, Start};
@@ -31,7 +31,7 @@ impl Path {
     pub fn symbols(&self) -> Vec<Term> {
         match &self.shape {
             Shape::Explicit(path) => path.symbols(),
-            Shape::Symbolic(path) => path.symbols(),
+            Shape::Symbolic(path) => path.symbols(self.moves()),
         }
     }
 
@@ -59,12 +59,7 @@ impl Known {
                 states: p.states.iter().map(|&s| p.graph.state(system, s)).collect(),
                 actions: p.actions.clone(),
             },
-            Known::Symbolic(p) => {
-                let state = |row: &Row| {
-                    row.iter().zip(&system.vars).map(|(&code, var)| decode(&var.ty, code)).collect()
-                };
-                Trace { path, states: p.rows.iter().map(state).collect(), actions: p.actions.clone() }
-            }
+            Known::Symbolic(p) => Trace { path, states: p.rows.clone(), actions: p.actions.clone() },
         }
     }
 }
@@ -84,11 +79,11 @@ impl Instance {
 /// A trace as the encoder writes it; `None` where it is no path of the system.
 pub(crate) fn known(encoder: &Encoder<'_>, trace: &Trace) -> Option<Known> {
     let system = encoder.system(trace.path);
-    let row = |state: &State| -> Row { state.iter().map(|&v| code(v)).collect() };
-    let rows: Vec<Row> = trace.states.iter().map(row).collect();
     let steps = encoder.horizon(trace.path) as usize;
     let actions = trace.actions.get(..steps)?.to_vec();
     if let Some(graph) = encoder.graph(trace.path).filter(|_| encoder.states == States::Onehot) {
+        let row = |state: &State| -> Row { state.iter().map(|&v| code(v)).collect() };
+        let rows: Vec<Row> = trace.states.iter().map(row).collect();
         let first = *graph.initial.iter().find(|&&s| graph.row(s) == &*rows[0])?;
         let (mut states, mut letters) = (vec![first], Vec::new());
         for (at, &action) in actions.iter().enumerate() {
@@ -102,6 +97,7 @@ pub(crate) fn known(encoder: &Encoder<'_>, trace: &Trace) -> Option<Known> {
         return Some(Known::Explicit(FixedPath::new(graph.clone(), states, letters)));
     }
     let moves = encoder.model(trace.path).moves.as_deref()?;
+    let rows = &trace.states;
     let step = |at: usize| moves.number_of(system, &rows[at], actions[at], &rows[at + 1]);
     let numbers: Option<Vec<u32>> = (0..steps).map(step).collect();
     Some(Known::Symbolic(FixedRows { rows: rows[..=steps].to_vec(), actions, numbers: numbers? }))
@@ -113,5 +109,5 @@ pub enum Instance {
     /// Over enumerated states.
     Explicit(Inputs<StateIx>),
     /// Over variables' values.
-    Symbolic(Inputs<Row>),
+    Symbolic(Inputs<State>),
 }

@@ -167,7 +167,7 @@ impl<'e, 'a> Query<'e, 'a> {
                 let graph = explicit_graph(self.encoder, path);
                 Shape::Explicit(ExplicitPath::declare(&mut self.script, &names, graph, &layers))
             }
-            States::Bitvec => {
+            States::Bitvec | States::Int => {
                 let declared = self.builder(path, &names).declare(&mut self.script);
                 Shape::Symbolic(declared)
             }
@@ -188,7 +188,7 @@ impl<'e, 'a> Query<'e, 'a> {
                 let (path, bound, guard) = ExplicitPath::bind(&mut self.script.terms, &names, graph, &layers);
                 (Shape::Explicit(path), bound, guard)
             }
-            States::Bitvec => {
+            States::Bitvec | States::Int => {
                 let builder = self.builder(path, &names);
                 let (path, bound, guard) = builder.bind(&mut self.script.terms);
                 (Shape::Symbolic(path), bound, guard)
@@ -199,12 +199,13 @@ impl<'e, 'a> Query<'e, 'a> {
 
     /// A known path, as constants.
     #[must_use]
-    pub fn fix(&self, path: PathId, known: &Known) -> Rc<Path> {
+    pub fn fix(&mut self, path: PathId, known: &Known) -> Rc<Path> {
         let shape = match known {
             Known::Explicit(fixed) => Shape::Explicit(ExplicitPath::fix(fixed)),
             Known::Symbolic(fixed) => {
                 let names = names(self.encoder, path, 0);
-                Shape::Symbolic(self.builder(path, &names).fix(fixed))
+                let builder = self.builder(path, &names);
+                Shape::Symbolic(builder.fix(&mut self.script.terms, fixed))
             }
         };
         self.path(path, shape)
@@ -294,8 +295,8 @@ impl<'e, 'a> Query<'e, 'a> {
             }
             (Shape::Symbolic(path), Instance::Symbolic(inputs)) => {
                 if let Start::State(row) = &inputs.start {
-                    for (value, &code) in path.states[0].iter().zip(row) {
-                        parts.push(crate::value::equal(script_terms, value, code));
+                    for (value, &known) in path.states[0].iter().zip(row) {
+                        parts.push(crate::value::is(script_terms, value, known));
                     }
                 }
                 for (step, movement) in path.steps.iter().zip(&inputs.moves) {

@@ -1,5 +1,6 @@
 //! The concrete path that an instance describes once the paths that it refers to are known.
 
+use crate::eval::{code, holds_in};
 use crate::explicit::FixedPath;
 use crate::graph::Graph;
 use crate::inputs::{Inputs, Move, Start};
@@ -7,7 +8,7 @@ use crate::path::{Instance, Known};
 use crate::reach::lasts;
 use crate::symbolic::{FixedRows, Moves};
 use crate::{Encoder, Row, StateIx};
-use hyperplan_problem::{ActionId, Mode, PathId};
+use hyperplan_problem::{ActionId, Mode, PathId, State};
 use std::rc::Rc;
 
 /// `None` where the instance describes no path: then it asks for nothing.
@@ -80,7 +81,7 @@ fn symbolic<'k>(
     encoder: &Encoder<'_>,
     moves: &Moves,
     path: PathId,
-    inputs: &Inputs<Row>,
+    inputs: &Inputs<State>,
     other: &impl Fn(PathId) -> Option<&'k Known>,
 ) -> Option<FixedRows> {
     let system = encoder.system(path);
@@ -91,7 +92,7 @@ fn symbolic<'k>(
             Known::Explicit(_) => return None,
         },
     };
-    if crate::eval::eval_in(system, &system.init, &first) == 0 {
+    if holds_in(system, &system.init, &first) != Some(true) {
         return None;
     }
     let mut fixed = FixedRows { rows: vec![first], actions: Vec::new(), numbers: Vec::new() };
@@ -101,14 +102,19 @@ fn symbolic<'k>(
             Move::SameAction(p, number) => (action_of(other(p), time)?, number),
             Move::Same(p) => (action_of(other(p), time)?, 0),
         };
-        let (number, next) = moves.preferred(system, fixed.rows.last()?, action, preferred)?;
+        let from = fixed.rows.last()?;
+        let values = inputs.values.get(time).unwrap_or(from);
+        let (number, next) = moves.preferred(system, from, action, preferred, values)?;
         fixed.rows.push(next);
         fixed.actions.push(action);
         fixed.numbers.push(number);
     }
     let model = encoder.model(path);
     let live = match (&model.live, encoder.objective.mode) {
-        (Some(live), Mode::Bounded) => live.binary_search(fixed.rows.last()?).is_ok(),
+        (Some(live), Mode::Bounded) => {
+            let last: Row = fixed.rows.last()?.iter().map(|&value| code(value)).collect();
+            live.binary_search(&last).is_ok()
+        }
         _ => true,
     };
     live.then_some(fixed)

@@ -1,12 +1,12 @@
 //! Expressions as terms.
 //!
-//! A number is a list of cases (value, when) where the states of its path are enumerated, and a bit-vector where
-//! they are not. The conditions of a list of cases exclude each other and cover everything *on the assumption that
+//! A number is a list of cases (value, when) where the states of its path are enumerated, and a bit-vector or an
+//! integer or real term where they are not. The conditions of a list of cases exclude each other and cover everything *on the assumption that
 //! the path is a path*, which every use is guarded by.
 
 use crate::eval::{bounds, code};
 use hyperplan_problem::{Comparison, Expr, TupleSet, Type, Value};
-use hyperplan_smt::{Sort, Term, Terms};
+use hyperplan_smt::{Rational, Sort, Term, Terms};
 use std::collections::BTreeMap;
 
 /// The value of an expression at one time.
@@ -18,6 +18,8 @@ pub(crate) enum Val {
     Cases(Vec<(i64, Term)>),
     /// A signed bit-vector, and bounds of the number that it stands for.
     Bits { term: Term, lo: i64, hi: i64 },
+    /// A term of sort Int or Real.
+    Number(Term),
 }
 
 /// Where the leaves of an expression come from.
@@ -40,14 +42,36 @@ pub(crate) fn width(lo: i64, hi: i64) -> u32 {
     bits(lo).max(bits(hi))
 }
 
-/// The sort of a variable that is no list of cases.
-pub(crate) fn sort_of(ty: &Type) -> Sort {
+/// The sort of a variable of a finite type as a bit-vector.
+pub(crate) fn bits_sort(ty: &Type) -> Sort {
+    match (ty, bounds(ty)) {
+        (Type::Bool, _) => Sort::Bool,
+        (_, Some((lo, hi))) => Sort::BitVec(width(lo, hi)),
+        (_, None) => number_sort(ty),
+    }
+}
+
+/// The sort of a variable as an integer or real.
+pub(crate) fn number_sort(ty: &Type) -> Sort {
     match ty {
         Type::Bool => Sort::Bool,
-        Type::Range { .. } | Type::Enum(_) => {
-            let (lo, hi) = bounds(ty);
-            Sort::BitVec(width(lo, hi))
-        }
+        Type::Range { .. } | Type::Enum(_) | Type::Int => Sort::Int,
+        Type::Real => Sort::Real,
+    }
+}
+
+/// A fraction as the terms have it.
+fn rational(value: hyperplan_problem::Rational) -> Rational {
+    let (numerator, denominator) = (i128::from(*value.numer()), i128::from(*value.denom()));
+    Rational::new(numerator, denominator).expect("denominators are not zero")
+}
+
+/// A known value.
+pub(crate) fn known(terms: &mut Terms, value: Value) -> Val {
+    match value {
+        Value::Bool(b) => Val::Bool(Term::from(b)),
+        Value::Real(r) => Val::Number(terms.real(rational(r))),
+        Value::Int(_) | Value::Enum(_) => constant(code(value)),
     }
 }
 
@@ -56,7 +80,7 @@ impl Val {
     pub(crate) fn truth(&self) -> Term {
         match self {
             Val::Bool(term) => *term,
-            Val::Cases(_) | Val::Bits { .. } => unreachable!("expressions are well-typed"),
+            Val::Cases(_) | Val::Bits { .. } | Val::Number(_) => unreachable!("expressions are well-typed"),
         }
     }
 
@@ -82,8 +106,29 @@ impl Val {
                 }
                 (term, lo, hi)
             }
-            Val::Bool(_) => unreachable!("expressions are well-typed"),
+            Val::Bool(_) | Val::Number(_) => unreachable!("expressions are well-typed"),
         }
+    }
+
+    /// As a term of sort Int or Real.
+    fn number(&self, terms: &mut Terms) -> Term {
+        match self {
+            Val::Number(term) => *term,
+            Val::Cases(cases) => {
+                let mut term = terms.int(cases.last().map_or(0, |c| c.0));
+                for &(value, when) in cases.iter().rev().skip(1) {
+                    let this = terms.int(value);
+                    term = terms.ite(when, this, term);
+                }
+                term
+            }
+            Val::Bool(_) | Val::Bits { .. } => unreachable!("a query has bit-vectors or numbers, not both"),
+        }
+    }
+
+    /// Whether it is, or has to be combined with, a term of sort Int or Real.
+    fn is_number(&self) -> bool {
+        matches!(self, Val::Number(_))
     }
 
     /// As a signed bit-vector term of that width, which must hold its values.
@@ -109,8 +154,7 @@ pub(crate) fn translate<L>(terms: &mut Terms, expr: &Expr<L>, leaves: &mut impl 
         return value;
     }
     match expr {
-        Expr::Const(Value::Bool(b)) => Val::Bool(if *b { Term::TRUE } else { Term::FALSE }),
-        Expr::Const(value) => constant(code(*value)),
+        Expr::Const(value) => known(terms, *value),
         Expr::Leaf(leaf) => leaves.leaf(terms, leaf),
         Expr::Not(a) => Val::Bool(!translate(terms, a, leaves).truth()),
         Expr::And(es) | Expr::Or(es) => {
@@ -133,13 +177,27 @@ pub(crate) fn translate<L>(terms: &mut Terms, expr: &Expr<L>, leaves: &mut impl 
             let a = translate(terms, a, leaves);
             multiply(terms, *c, a)
         }
+        Expr::Scale(c, a) => {
+            let a = translate(terms, a, leaves).number(terms);
+            Val::Number(terms.real_mul(rational(*c), a))
+        }
+        Expr::ToReal(a) => {
+            let a = translate(terms, a, leaves).number(terms);
+            Val::Number(terms.to_real(a))
+        }
         Expr::Div(a, c) => {
             let a = translate(terms, a, leaves);
+            if let Val::Number(a) = a {
+                return Val::Number(terms.int_div(a, *c));
+            }
             pointwise(terms, a, |v| v.div_euclid(*c), |v| (v.div_euclid(*c) + 1).saturating_mul(*c))
         }
         Expr::Mod(a, c) => {
             // a mod c = a - c * (a div c)
             let a = translate(terms, a, leaves);
+            if let Val::Number(a) = a {
+                return Val::Number(terms.int_mod(a, *c));
+            }
             let quotient = pointwise(
                 terms,
                 a.clone(),
@@ -183,6 +241,10 @@ pub(crate) fn choose(terms: &mut Terms, c: Term, a: Val, b: Val) -> Val {
             }
             merge(terms, all.into_iter())
         }
+        (a, b) if a.is_number() || b.is_number() => {
+            let (a, b) = (a.number(terms), b.number(terms));
+            Val::Number(terms.ite(c, a, b))
+        }
         (a, b) => {
             let ((a, alo, ahi), (b, blo, bhi)) = (a.bits(terms), b.bits(terms));
             let (lo, hi) = (alo.min(blo), ahi.max(bhi));
@@ -205,6 +267,11 @@ pub(crate) fn merge(terms: &mut Terms, cases: impl Iterator<Item = (i64, Term)>)
 }
 
 fn add(terms: &mut Terms, a: Val, b: Val) -> Val {
+    if a.is_number() || b.is_number() {
+        let (a, b) = (a.number(terms), b.number(terms));
+        let real = terms.sort(a) == Sort::Real;
+        return Val::Number(if real { terms.real_add(&[a, b]) } else { terms.int_add(&[a, b]) });
+    }
     match (a.cases(), b.cases()) {
         (Ok(a), Ok(b)) => {
             let mut sums = Vec::with_capacity(a.len() * b.len());
@@ -229,6 +296,7 @@ fn add(terms: &mut Terms, a: Val, b: Val) -> Val {
 fn multiply(terms: &mut Terms, c: i64, a: Val) -> Val {
     match a {
         Val::Cases(cases) => merge(terms, cases.into_iter().map(|(v, when)| (c * v, when))),
+        Val::Number(a) => Val::Number(terms.int_mul(c, a)),
         bits => {
             let (a, alo, ahi) = bits.bits(terms);
             let (lo, hi) = ((c * alo).min(c * ahi), (c * alo).max(c * ahi));
@@ -269,6 +337,16 @@ fn pointwise(terms: &mut Terms, a: Val, value: impl Fn(i64) -> i64, next: impl F
 
 /// A comparison of two numbers.
 pub(crate) fn compare(terms: &mut Terms, op: Comparison, a: Val, b: Val) -> Term {
+    if a.is_number() || b.is_number() {
+        let (a, b) = (a.number(terms), b.number(terms));
+        return match (op, terms.sort(a) == Sort::Real) {
+            (Comparison::Eq, _) => terms.eq(a, b),
+            (Comparison::Lt, true) => terms.real_lt(a, b),
+            (Comparison::Le, true) => terms.real_le(a, b),
+            (Comparison::Lt, false) => terms.int_lt(a, b),
+            (Comparison::Le, false) => terms.int_le(a, b),
+        };
+    }
     match (a.cases(), b.cases()) {
         (Ok(a), Ok(b)) => match op {
             Comparison::Eq => equal_cases(terms, &a, &b),
@@ -368,6 +446,12 @@ pub(crate) fn equal(terms: &mut Terms, value: &Val, code: i64) -> Term {
         Val::Bool(term) => term.negate_if(code == 0),
         number => compare(terms, Comparison::Eq, number.clone(), constant(code)),
     }
+}
+
+/// Whether it has this value.
+pub(crate) fn is(terms: &mut Terms, value: &Val, known_value: Value) -> Term {
+    let other = known(terms, known_value);
+    same(terms, value, &other)
 }
 
 /// Whether two values of one type are equal.

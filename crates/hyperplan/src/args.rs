@@ -93,8 +93,7 @@ pub(crate) enum States {
     Onehot,
     /// A bit-vector for each variable
     Bitvec,
-    /// Not supported yet
-    #[value(hide = true)]
+    /// An integer or real for each variable
     Int,
     /// Not supported yet
     #[value(hide = true)]

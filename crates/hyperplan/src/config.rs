@@ -64,8 +64,10 @@ pub(crate) fn states(typed: args::States) -> Outcome<States> {
         args::States::Auto => Ok(States::Auto),
         args::States::Onehot => Ok(States::Onehot),
         args::States::Bitvec => Ok(States::Bitvec),
-        args::States::Int => Err(Failure::input("--states int is not supported yet; use onehot or bitvec")),
-        args::States::Enum => Err(Failure::input("--states enum is not supported yet; use onehot or bitvec")),
+        args::States::Int => Ok(States::Int),
+        args::States::Enum => {
+            Err(Failure::input("--states enum is not supported yet; use onehot, bitvec or int"))
+        }
     }
 }
 

@@ -40,6 +40,8 @@ pub enum States {
     Onehot,
     /// A bit-vector for each variable.
     Bitvec,
+    /// An integer or real for each variable.
+    Int,
 }
 
 impl States {
@@ -48,6 +50,7 @@ impl States {
             States::Auto => None,
             States::Onehot => Some(encode::States::Onehot),
             States::Bitvec => Some(encode::States::Bitvec),
+            States::Int => Some(encode::States::Int),
         }
     }
 }
@@ -57,6 +60,7 @@ impl From<encode::States> for States {
         match states {
             encode::States::Onehot => States::Onehot,
             encode::States::Bitvec => States::Bitvec,
+            encode::States::Int => States::Int,
         }
     }
 }
@@ -67,6 +71,7 @@ impl fmt::Display for States {
             States::Auto => "auto",
             States::Onehot => "onehot",
             States::Bitvec => "bitvec",
+            States::Int => "int",
         })
     }
 }

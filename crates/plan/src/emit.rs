@@ -42,7 +42,7 @@ pub fn emit(problem: &Problem, objective: &Objective, config: &EmitConfig) -> Re
                 empty = Some(objective.paths[path].quantifier);
                 break;
             }
-            None if objective.mode == Mode::Bounded => {
+            None if objective.mode == Mode::Bounded && encoder.system(path).is_finite() => {
                 return Err(Error::Unsupported(format!(
                     "system {} is too large to enumerate, so it is not known which of its paths go on for ever; \
                      use `within K`",
@@ -94,6 +94,7 @@ fn source(encoder: &Encoder<'_>, exists: bool) -> String {
     let states = match encoder.states {
         encode::States::Onehot => "one Boolean for each time and state",
         encode::States::Bitvec => "one bit-vector for each time and variable",
+        encode::States::Int => "one number for each time and variable",
     };
     let meaning = if exists { "a strategy" } else { "a counterexample" };
     let horizons: Vec<String> = objective

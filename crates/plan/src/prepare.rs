@@ -20,7 +20,8 @@ pub(crate) fn no_dead_ends(encoder: &Encoder<'_>, oracle: &mut Oracle<'_>) -> Re
         return Ok(());
     }
     for path in encoder.objective.paths.keys() {
-        if encoder.graph(path).is_some() {
+        // In a system with infinitely many states a path has its horizon's steps, whatever may follow.
+        if encoder.graph(path).is_some() || !encoder.system(path).is_finite() {
             continue;
         }
         let script = encoder.stuck(path);

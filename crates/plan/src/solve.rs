@@ -23,6 +23,9 @@ pub fn solve(problem: &Problem, objective: &Objective, config: &Config) -> Resul
     let start = Instant::now();
     let stop = || config.deadline.passed();
     let encoder = Encoder::new(problem, objective, config.states.wish(), Limits::default(), &stop)?;
+    if encoder.states == encode::States::Int && config.solver == Spec::Builtin {
+        return Err(needs_arithmetic(&encoder));
+    }
     let mut oracle = Oracle::new(config);
     let mut outcome = unknown(objective, &encoder, config);
     let vacuous = no_dead_ends(&encoder, &mut oracle).and_then(|()| without_paths(&encoder, &mut oracle));
@@ -62,6 +65,18 @@ pub fn solve(problem: &Problem, objective: &Objective, config: &Config) -> Resul
         outcome.seconds.verify = start.elapsed().as_secs_f64();
     }
     Ok(outcome)
+}
+
+/// The embedded solver knows bits only.
+fn needs_arithmetic(encoder: &Encoder<'_>) -> Error {
+    let systems = encoder.objective.paths.iter().map(|path| &encoder.problem.systems[path.system]);
+    let what = match systems.into_iter().find(|system| !system.is_finite()) {
+        Some(system) => format!("system {} has variables without bounds, which", system.name),
+        None => "--states int".to_owned(),
+    };
+    Error::Unsupported(format!(
+        "{what} takes a solver for integers and reals, such as --solver z3, cvc5 or yices; the builtin solver has none"
+    ))
 }
 
 fn unknown(objective: &Objective, encoder: &Encoder<'_>, config: &Config) -> Outcome {
@@ -180,8 +195,13 @@ fn conclude(encoder: &Encoder<'_>, found: Option<&Assignment>, outcome: &mut Out
 fn confirm(encoder: &Encoder<'_>, config: &Config, outcome: &mut Outcome) -> Result<(), Error> {
     let Some(strategy) = &outcome.witness else { return Ok(()) };
     let (problem, objective) = (encoder.problem, encoder.objective);
-    let verdict = verify::check(problem, objective, strategy, &verify::Budget::default())
-        .map_err(|error| Error::Bug(error.to_string()))?;
+    let verdict = match verify::check(problem, objective, strategy, &verify::Budget::default()) {
+        Err(error @ verify::Error::Overflow { .. }) => {
+            unverified(outcome, &error.to_string());
+            return Ok(());
+        }
+        verdict => verdict.map_err(|error| Error::Bug(error.to_string()))?,
+    };
     match verdict {
         verify::Verdict::Holds => outcome.verified = Some(Verified::BySearch),
         verify::Verdict::Fails(defeat) => {
@@ -198,18 +218,20 @@ fn confirm(encoder: &Encoder<'_>, config: &Config, outcome: &mut Outcome) -> Res
             Ok(false) => outcome.verified = Some(Verified::BySolver),
             Ok(true) => return Err(Error::Bug("a second query defeats it".into())),
             Err(Stop::Error(error)) => return Err(error),
-            Err(Stop::Unknown(reason)) => {
-                outcome.verdict = Verdict::Unknown;
-                outcome.witness = None;
-                outcome.reason = Some(format!("a strategy was found, but could not be verified: {reason}"));
-            }
+            Err(Stop::Unknown(reason)) => unverified(outcome, &reason),
         },
     }
     Ok(())
 }
 
-/// Whether the paths after the leading block can defeat the strategy, asked of the embedded solver where there is
-/// one.
+/// What nobody could check is no answer.
+fn unverified(outcome: &mut Outcome, reason: &str) {
+    outcome.verdict = Verdict::Unknown;
+    outcome.witness = None;
+    outcome.reason = Some(format!("a strategy was found, but could not be verified: {reason}"));
+}
+
+/// Whether the paths after the leading block can defeat the strategy, asked of the embedded solver where it can tell.
 fn defeated(encoder: &Encoder<'_>, config: &Config, strategy: &Strategy) -> Result<bool, Stop> {
     let objective = encoder.objective;
     let blocks = blocks(objective);
@@ -222,7 +244,11 @@ fn defeated(encoder: &Encoder<'_>, config: &Config, strategy: &Strategy) -> Resu
         // No path at all, or nothing left to choose: the checker's word stands.
         return Ok(true);
     }
-    let own = Config { solver: Spec::Builtin, queries: None, ..config.clone() };
+    let solver = match encoder.states {
+        encode::States::Int => config.solver.clone(),
+        encode::States::Onehot | encode::States::Bitvec => Spec::Builtin,
+    };
+    let own = Config { solver, queries: None, ..config.clone() };
     let formula = &objective.formula;
     let against = Goal::new(formula, want).opposed(formula);
     let mut oracle = Oracle::new(&own);

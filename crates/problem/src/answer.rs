@@ -3,8 +3,9 @@
 //! `docs/answer.schema.json` describes the same objects. Fields stand in the order of the structs; names of
 //! paths, actions and variables are those of the problem file.
 
-use crate::expr::{State, Type, Value};
+use crate::expr::{Rational, State, Type, Value};
 use crate::ids::{ActionId, PathId, VarId};
+use crate::lower::number;
 use crate::objective::Objective;
 use crate::problem::Problem;
 use crate::strategy::{Strategy, Trace};
@@ -106,14 +107,16 @@ pub struct WitnessPath {
 }
 
 /// The value of a variable.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Scalar {
     /// A truth value.
     Bool(bool),
     /// An integer.
     Int(i64),
-    /// An enumeration value.
+    /// A decimal number, which stands for the shortest decimal fraction that reads as it.
+    Decimal(f64),
+    /// An enumeration value, or a fraction such as `1/4`.
     Name(String),
 }
 
@@ -122,6 +125,7 @@ impl fmt::Display for Scalar {
         match self {
             Scalar::Bool(b) => b.fmt(f),
             Scalar::Int(n) => n.fmt(f),
+            Scalar::Decimal(x) => x.fmt(f),
             Scalar::Name(s) => write!(f, "\"{s}\""),
         }
     }
@@ -330,6 +334,8 @@ fn write_value(ty: &Type, value: Value) -> Scalar {
             Scalar::Name(names.get(i as usize).cloned().unwrap_or_else(|| i.to_string()))
         }
         (Value::Enum(i), _) => Scalar::Int(i64::from(i)),
+        (Value::Real(r), _) if r.is_integer() => Scalar::Int(r.to_integer()),
+        (Value::Real(r), _) => Scalar::Name(r.to_string()),
     }
 }
 
@@ -457,6 +463,10 @@ fn read_value(ty: &Type, value: &Scalar) -> Option<Value> {
     match (ty, value) {
         (Type::Bool, Scalar::Bool(b)) => Some(Value::Bool(*b)),
         (Type::Range { lo, hi }, Scalar::Int(n)) if (lo..=hi).contains(&n) => Some(Value::Int(*n)),
+        (Type::Int, Scalar::Int(n)) => Some(Value::Int(*n)),
+        (Type::Real, Scalar::Int(n)) => Some(Value::Real(Rational::from(*n))),
+        (Type::Real, Scalar::Decimal(x)) => real(&x.to_string()),
+        (Type::Real, Scalar::Name(text)) => real(text),
         (Type::Enum(names), Scalar::Name(name)) => {
             let index = names.iter().position(|n| n == name)?;
             u32::try_from(index).ok().map(Value::Enum)
@@ -465,11 +475,20 @@ fn read_value(ty: &Type, value: &Scalar) -> Option<Value> {
     }
 }
 
+fn real(text: &str) -> Option<Value> {
+    match number(text)? {
+        Value::Int(n) => Some(Value::Real(Rational::from(n))),
+        real => Some(real),
+    }
+}
+
 fn type_in_words(ty: &Type) -> String {
     match ty {
         Type::Bool => "true or false".to_owned(),
         Type::Range { lo, hi } => format!("an integer in {lo}..{hi}"),
         Type::Enum(names) => format!("one of {}", names.join(", ")),
+        Type::Int => "an integer".to_owned(),
+        Type::Real => "a number or a fraction in quotes, such as \"1/4\"".to_owned(),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Typed things back in the language's syntax, for messages.
 
-use crate::expr::{Comparison, Expr, Leaf, PathLeaf, State, Type, Value};
+use crate::expr::{Comparison, Expr, Leaf, PathLeaf, Rational, State, Type, Value};
 use crate::ids::{FormulaId, PathId};
 use crate::objective::{Interval, Node, Objective, Quantifier, TemporalOp};
 use crate::problem::Problem;
@@ -66,6 +66,7 @@ pub fn value(ty: &Type, value: Value) -> String {
             values.get(index as usize).cloned().unwrap_or_else(|| format!("#{index}"))
         }
         (Value::Enum(index), _) => format!("#{index}"),
+        (Value::Real(r), _) => r.to_string(),
     }
 }
 
@@ -245,6 +246,19 @@ impl<N> Printer<'_, N> {
                 p.out += &format!("{c} * ");
                 p.expr(a, level::ATOM, None);
             }
+            Expr::Scale(c, a) if *c == -Rational::ONE => {
+                p.out.push('-');
+                p.expr(a, level::ATOM, None);
+            }
+            Expr::Scale(c, a) if c.is_integer() || *c.numer() != 1 => {
+                p.out += &format!("{c} * ");
+                p.expr(a, level::ATOM, None);
+            }
+            Expr::Scale(c, a) => {
+                p.expr(a, level::ATOM, None);
+                p.out += &format!(" / {}", c.denom());
+            }
+            Expr::ToReal(a) => p.expr(a, place, ty),
             Expr::Div(a, c) => {
                 p.expr(a, level::ATOM, None);
                 p.out += &format!(" div {c}");
@@ -307,7 +321,12 @@ impl<N> Printer<'_, N> {
                     self.out += &format!(" - {}", n.unsigned_abs());
                     continue;
                 }
+                Expr::Const(Value::Real(r)) if *r < Rational::ZERO && index > 0 => {
+                    self.out += &format!(" - {}", -*r);
+                    continue;
+                }
                 Expr::Mul(-1, e) if index > 0 => (true, &**e),
+                Expr::Scale(c, e) if *c == -Rational::ONE && index > 0 => (true, &**e),
                 e => (false, e),
             };
             if index > 0 {
@@ -402,6 +421,9 @@ impl Printer<'_, PathNames<'_>> {
 fn expr_level<L>(e: &Expr<L>) -> u8 {
     match e {
         Expr::Const(Value::Int(n)) if *n < 0 => level::SUM,
+        Expr::Const(Value::Real(r)) if *r < Rational::ZERO => level::SUM,
+        Expr::Const(Value::Real(r)) if !r.is_integer() => level::PRODUCT,
+        Expr::ToReal(a) => expr_level(a),
         Expr::Const(_) | Expr::Leaf(_) => level::ATOM,
         Expr::Not(_) => level::UNARY,
         Expr::And(_) => level::AND,
@@ -409,7 +431,7 @@ fn expr_level<L>(e: &Expr<L>) -> u8 {
         Expr::Iff(..) => level::IFF,
         Expr::Compare(..) | Expr::Member(..) => level::COMPARE,
         Expr::Add(_) => level::SUM,
-        Expr::Mul(..) | Expr::Div(..) | Expr::Mod(..) => level::PRODUCT,
+        Expr::Mul(..) | Expr::Scale(..) | Expr::Div(..) | Expr::Mod(..) => level::PRODUCT,
         Expr::If(..) => 0,
     }
 }

@@ -1,6 +1,8 @@
 //! Typed expressions, over the state of one system or over the paths of an objective.
 
 use crate::ids::{ActionId, LabelId, PathId, VarId};
+use num_rational::Ratio;
+use num_traits::{CheckedAdd, CheckedMul};
 use rustc_hash::FxHashSet;
 use std::sync::Arc;
 
@@ -18,7 +20,36 @@ pub enum Type {
     },
     /// An enumeration, its values in order of declaration.
     Enum(Arc<[String]>),
+    /// `int`: all integers
+    Int,
+    /// `real`: all real numbers
+    Real,
 }
+
+impl Type {
+    /// Whether the type has finitely many values.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        match self {
+            Type::Bool | Type::Range { .. } | Type::Enum(_) => true,
+            Type::Int | Type::Real => false,
+        }
+    }
+
+    /// Whether the value is one of the type.
+    #[must_use]
+    pub fn contains(&self, value: Value) -> bool {
+        match (self, value) {
+            (Type::Bool, Value::Bool(_)) | (Type::Int, Value::Int(_)) | (Type::Real, Value::Real(_)) => true,
+            (Type::Range { lo, hi }, Value::Int(n)) => (*lo..=*hi).contains(&n),
+            (Type::Enum(names), Value::Enum(i)) => (i as usize) < names.len(),
+            _ => false,
+        }
+    }
+}
+
+/// An exact fraction of 64-bit integers. What does not fit is reported, never rounded.
+pub type Rational = Ratio<i64>;
 
 /// A value of a variable or expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -29,6 +60,30 @@ pub enum Value {
     Int(i64),
     /// An enumeration value, by position in its [`Type::Enum`].
     Enum(u32),
+    /// A real number, as far as it is a fraction.
+    Real(Rational),
+}
+
+impl Value {
+    /// The sum of two numbers of one type; `None` where it does not fit.
+    #[must_use]
+    pub fn checked_add(self, other: Value) -> Option<Value> {
+        match (self, other) {
+            (Value::Int(a), Value::Int(b)) => a.checked_add(b).map(Value::Int),
+            (Value::Real(a), Value::Real(b)) => a.checked_add(&b).map(Value::Real),
+            _ => None,
+        }
+    }
+
+    /// The product of two numbers of one type; `None` where it does not fit.
+    #[must_use]
+    pub fn checked_mul(self, other: Value) -> Option<Value> {
+        match (self, other) {
+            (Value::Int(a), Value::Int(b)) => a.checked_mul(b).map(Value::Int),
+            (Value::Real(a), Value::Real(b)) => a.checked_mul(&b).map(Value::Real),
+            _ => None,
+        }
+    }
 }
 
 /// One value for each variable of a system.
@@ -72,12 +127,24 @@ impl PathLeaf {
 /// Comparison of two values of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Comparison {
-    /// Equality: both integers, or both of one enumeration.
+    /// Equality: both integers, both reals, or both of one enumeration.
     Eq,
-    /// Less, on integers.
+    /// Less, on integers or reals.
     Lt,
-    /// Less or equal, on integers.
+    /// Less or equal, on integers or reals.
     Le,
+}
+
+impl Comparison {
+    /// Whether it holds between two values of one type.
+    #[must_use]
+    pub fn holds(self, a: Value, b: Value) -> bool {
+        match self {
+            Comparison::Eq => a == b,
+            Comparison::Lt => a < b,
+            Comparison::Le => a <= b,
+        }
+    }
 }
 
 /// The tuples of a set such as `{(0, 0), (3, 4)}`; a map's obstacles and cells are such sets.
@@ -105,8 +172,10 @@ impl TupleSet {
     }
 }
 
-/// A well-typed expression with leaves `L`. Integers are mathematical: the bounds of every subexpression were
-/// computed when it was built and fit in 62 bits, so no evaluation overflows.
+/// A well-typed expression with leaves `L`. Integers are mathematical: where no variable of type `int` is read, the
+/// bounds of every subexpression were computed when it was built and fit in 62 bits, so that no evaluation
+/// overflows. Reals occur only where a variable of type `real` is read or assigned: other comparisons of fractions
+/// were turned into comparisons of integers.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Expr<L> {
     /// A constant.
@@ -121,12 +190,16 @@ pub enum Expr<L> {
     Or(Vec<Expr<L>>),
     /// Equivalence of two Booleans.
     Iff(Box<Expr<L>>, Box<Expr<L>>),
-    /// Comparison of two integers, or equality of two enumeration values.
+    /// Comparison of two integers or two reals, or equality of two enumeration values.
     Compare(Comparison, Box<Expr<L>>, Box<Expr<L>>),
-    /// Sum of integers; 0 when empty.
+    /// Sum of integers or of reals; never empty.
     Add(Vec<Expr<L>>),
     /// Product of an integer and a constant.
     Mul(i64, Box<Expr<L>>),
+    /// Product of a real and a constant.
+    Scale(Rational, Box<Expr<L>>),
+    /// An integer as a real.
+    ToReal(Box<Expr<L>>),
     /// Integer quotient by a positive constant, rounded down (SMT-LIB `div`).
     Div(Box<Expr<L>>, i64),
     /// Remainder of [`Expr::Div`], never negative (SMT-LIB `mod`).
@@ -160,7 +233,12 @@ impl<L> Expr<L> {
     pub fn children(&self) -> Vec<&Expr<L>> {
         match self {
             Expr::Const(_) | Expr::Leaf(_) => Vec::new(),
-            Expr::Not(a) | Expr::Mul(_, a) | Expr::Div(a, _) | Expr::Mod(a, _) => vec![a],
+            Expr::Not(a)
+            | Expr::Mul(_, a)
+            | Expr::Scale(_, a)
+            | Expr::ToReal(a)
+            | Expr::Div(a, _)
+            | Expr::Mod(a, _) => vec![a],
             Expr::And(es) | Expr::Or(es) | Expr::Add(es) | Expr::Member(es, _) => es.iter().collect(),
             Expr::Iff(a, b) | Expr::Compare(_, a, b) => vec![a, b],
             Expr::If(a, b, c) => vec![a, b, c],
@@ -189,6 +267,8 @@ impl<L> Expr<L> {
             Expr::Leaf(leaf) => Expr::Leaf(f(leaf)),
             Expr::Not(a) => Expr::Not(Box::new(a.map(f))),
             Expr::Mul(c, a) => Expr::Mul(*c, Box::new(a.map(f))),
+            Expr::Scale(c, a) => Expr::Scale(*c, Box::new(a.map(f))),
+            Expr::ToReal(a) => Expr::ToReal(Box::new(a.map(f))),
             Expr::Div(a, c) => Expr::Div(Box::new(a.map(f)), *c),
             Expr::Mod(a, c) => Expr::Mod(Box::new(a.map(f)), *c),
             Expr::Iff(a, b) => Expr::Iff(Box::new(a.map(f)), Box::new(b.map(f))),
@@ -196,4 +276,61 @@ impl<L> Expr<L> {
             Expr::If(a, b, c) => Expr::If(Box::new(a.map(f)), Box::new(b.map(f)), Box::new(c.map(f))),
         }
     }
+
+    /// The value, given that of each leaf; `None` where a leaf that matters has none, or a number does not fit.
+    /// A false conjunct and a true disjunct decide whatever the others are.
+    pub fn evaluate(&self, leaf: &mut impl FnMut(&L) -> Option<Value>) -> Option<Value> {
+        match self {
+            Expr::Const(value) => Some(*value),
+            Expr::Leaf(l) => leaf(l),
+            Expr::Not(a) => a.truth(leaf).map(|a| Value::Bool(!a)),
+            Expr::And(es) => junction(es, false, leaf).map(Value::Bool),
+            Expr::Or(es) => junction(es, true, leaf).map(Value::Bool),
+            Expr::Iff(a, b) => Some(Value::Bool(a.truth(leaf)? == b.truth(leaf)?)),
+            Expr::Compare(op, a, b) => Some(Value::Bool(op.holds(a.evaluate(leaf)?, b.evaluate(leaf)?))),
+            Expr::Add(es) => {
+                let (first, rest) = es.split_first()?;
+                let first = first.evaluate(leaf)?;
+                rest.iter().try_fold(first, |sum, e| sum.checked_add(e.evaluate(leaf)?))
+            }
+            Expr::Mul(c, a) => Value::Int(*c).checked_mul(a.evaluate(leaf)?),
+            Expr::Scale(c, a) => Value::Real(*c).checked_mul(a.evaluate(leaf)?),
+            Expr::ToReal(a) => a.integer(leaf).map(|n| Value::Real(Rational::from(n))),
+            Expr::Div(a, c) => a.integer(leaf)?.checked_div_euclid(*c).map(Value::Int),
+            Expr::Mod(a, c) => a.integer(leaf)?.checked_rem_euclid(*c).map(Value::Int),
+            Expr::If(c, a, b) => if c.truth(leaf)? { a } else { b }.evaluate(leaf),
+            Expr::Member(es, set) => {
+                let tuple: Vec<i64> = es.iter().map(|e| e.integer(leaf)).collect::<Option<_>>()?;
+                Some(Value::Bool(set.contains(&tuple)))
+            }
+        }
+    }
+
+    /// The truth value of a Boolean expression; see [`Expr::evaluate`].
+    pub fn truth(&self, leaf: &mut impl FnMut(&L) -> Option<Value>) -> Option<bool> {
+        match self.evaluate(leaf)? {
+            Value::Bool(b) => Some(b),
+            Value::Int(_) | Value::Enum(_) | Value::Real(_) => None,
+        }
+    }
+
+    fn integer(&self, leaf: &mut impl FnMut(&L) -> Option<Value>) -> Option<i64> {
+        match self.evaluate(leaf)? {
+            Value::Int(n) => Some(n),
+            Value::Bool(_) | Value::Enum(_) | Value::Real(_) => None,
+        }
+    }
+}
+
+/// A disjunction (`winner` true) or conjunction (`winner` false) of which some parts may have no value.
+fn junction<L>(es: &[Expr<L>], winner: bool, leaf: &mut impl FnMut(&L) -> Option<Value>) -> Option<bool> {
+    let mut unknown = false;
+    for e in es {
+        match e.truth(leaf) {
+            Some(b) if b == winner => return Some(winner),
+            Some(_) => {}
+            None => unknown = true,
+        }
+    }
+    if unknown { None } else { Some(!winner) }
 }

@@ -13,7 +13,7 @@ mod problem;
 mod strategy;
 mod system;
 
-pub use expr::{Comparison, Expr, Leaf, PathLeaf, State, TupleSet, Type, Value};
+pub use expr::{Comparison, Expr, Leaf, PathLeaf, Rational, State, TupleSet, Type, Value};
 pub use ids::{ActionId, FormulaId, LabelId, PathId, SystemId, VarId};
 pub use lower::{Loader, Lowered, NoFiles, Overrides, lower, read};
 pub use objective::{Formula, Interval, Mode, Node, Objective, PathVar, Quantifier, TemporalOp};

@@ -80,8 +80,9 @@ pub enum Update {
     Assign(Expr<Leaf>),
     /// `v' in {E, ...}`; never empty
     OneOf(Vec<Expr<Leaf>>),
-    /// `v' in LO..HI`, constant ends, `lo <= hi`
-    Within(i64, i64),
+    /// `v' in LO..HI`: every number of the variable's type between the two, both included; none where the first
+    /// is greater.
+    Within(Expr<Leaf>, Expr<Leaf>),
 }
 
 /// How to draw a map: cells are named by column `x` from the left and row `y` from the bottom.
@@ -102,6 +103,12 @@ pub struct Map {
 }
 
 impl System {
+    /// Whether every variable has finitely many values.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.vars.iter().all(|var| var.ty.is_finite())
+    }
+
     /// The variable with that name.
     #[must_use]
     pub fn var(&self, name: &str) -> Option<VarId> {

@@ -38,6 +38,7 @@ fn in_words(ty: &Type, value: Value) -> String {
         (Value::Int(n), _) => n.to_string(),
         (Value::Enum(i), Type::Enum(names)) => names.get(i as usize).cloned().unwrap_or_default(),
         (Value::Enum(i), _) => i.to_string(),
+        (Value::Real(r), _) => r.to_string(),
     }
 }
 

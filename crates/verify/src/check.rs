@@ -98,9 +98,11 @@ fn well_formed(search: &mut Search<'_>, objective: &Objective, trace: &Trace) ->
     if trace.states.len() != steps + 1 {
         return Err(Error::Lengths { path: path(), states: trace.states.len(), actions: steps }.into());
     }
-    if let Mode::Within(k) = objective.mode
-        && steps as u64 != u64::from(k)
-    {
+    let length = match objective.mode {
+        Mode::Within(k) => Some(u64::from(k)),
+        Mode::Bounded => search.ends[trace.path],
+    };
+    if length.is_some_and(|length| steps as u64 != length) {
         return Err(wrong_length(objective, trace).into());
     }
     let graph = &mut search.graphs[var.system];
@@ -119,7 +121,7 @@ fn well_formed(search: &mut Search<'_>, objective: &Objective, trace: &Trace) ->
 
 /// Why a trace is not (the beginning of) a path of its system.
 fn no_path(search: &mut Search<'_>, objective: &Objective, index: usize) -> Result<Option<Defeat>, Stop> {
-    let Search { fixed, graphs, .. } = search;
+    let Search { fixed, graphs, ends, .. } = search;
     let trace = &fixed[index];
     let path = trace.path;
     let graph = &mut graphs[objective.paths[path].system];
@@ -129,12 +131,11 @@ fn no_path(search: &mut Search<'_>, objective: &Objective, index: usize) -> Resu
         return Ok(Some(Defeat::NotInitial { path }));
     }
     for (step, (pair, &action)) in trace.states.windows(2).zip(&trace.actions).enumerate() {
-        let moves = graph.moves(pair[0])?;
-        if !moves.iter().any(|m| m.action == action && m.to == pair[1]) {
+        if !graph.has_step(pair[0], action, pair[1])? {
             return Ok(Some(Defeat::NoTransition { path, step }));
         }
     }
-    if let (Mode::Bounded, Some(&last)) = (objective.mode, trace.states.last())
+    if let (Mode::Bounded, None, Some(&last)) = (objective.mode, ends[path], trace.states.last())
         && !graph.can_go(last, Ahead::Forever)?
     {
         return Ok(Some(Defeat::DeadEnd { path }));
@@ -145,7 +146,7 @@ fn no_path(search: &mut Search<'_>, objective: &Objective, index: usize) -> Resu
 /// The traces of the first free block along the moves that decide it, continued in any way to the length that the
 /// objective reads: whatever follows, they defeat the claim.
 fn defeating(search: &mut Search<'_>, objective: &Objective, chain: &[Came]) -> Result<Vec<Trace>, Stop> {
-    let Search { graphs, levels, mode, .. } = search;
+    let Search { graphs, levels, mode, ends, .. } = search;
     let joint = &levels[0].joint;
     let mut traces = Vec::new();
     for (i, &(path, system)) in joint.paths.iter().enumerate() {
@@ -156,10 +157,14 @@ fn defeating(search: &mut Search<'_>, objective: &Objective, chain: &[Came]) -> 
             Mode::Bounded => horizon(objective, path).min(LONGEST_DEFEAT),
             Mode::Within(k) => u64::from(*k),
         };
+        if let Some(end) = ends[path].and_then(|end| usize::try_from(end).ok()) {
+            // Beyond its end it only waited for the others.
+            ids.truncate(end + 1);
+        }
         while let (Some(&last), Some(rest)) = (ids.last(), length.checked_sub(actions.len() as u64 + 1)) {
             let ahead = match mode {
-                Mode::Bounded => Ahead::Forever,
-                Mode::Within(_) => Ahead::Steps(u32::try_from(rest).unwrap_or(u32::MAX)),
+                Mode::Bounded if ends[path].is_none() => Ahead::Forever,
+                _ => Ahead::Steps(u32::try_from(rest).unwrap_or(u32::MAX)),
             };
             let mut onward = None;
             for mv in graph.moves(last)?.iter() {

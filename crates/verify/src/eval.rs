@@ -14,10 +14,13 @@ pub(crate) fn eval<L>(expr: &Expr<L>, leaf: &impl Fn(&L) -> Option<Value>) -> Op
         Expr::Iff(a, b) => Some(Value::Bool(truth(a, leaf)? == truth(b, leaf)?)),
         Expr::Compare(op, a, b) => compare(*op, eval(a, leaf)?, eval(b, leaf)?).map(Value::Bool),
         Expr::Add(es) => {
-            let sum = es.iter().try_fold(0_i64, |sum, e| sum.checked_add(int(e, leaf)?))?;
-            Some(Value::Int(sum))
+            let (first, rest) = es.split_first()?;
+            let first = eval(first, leaf)?;
+            rest.iter().try_fold(first, |sum, e| sum.checked_add(eval(e, leaf)?))
         }
         Expr::Mul(c, a) => c.checked_mul(int(a, leaf)?).map(Value::Int),
+        Expr::Scale(c, a) => Value::Real(*c).checked_mul(eval(a, leaf)?),
+        Expr::ToReal(a) => int(a, leaf).map(|n| Value::Real(n.into())),
         Expr::Div(a, c) => int(a, leaf)?.checked_div_euclid(*c).map(Value::Int),
         Expr::Mod(a, c) => int(a, leaf)?.checked_rem_euclid(*c).map(Value::Int),
         Expr::If(c, a, b) => match truth(c, leaf) {
@@ -36,14 +39,14 @@ pub(crate) fn eval<L>(expr: &Expr<L>, leaf: &impl Fn(&L) -> Option<Value>) -> Op
 pub(crate) fn truth<L>(expr: &Expr<L>, leaf: &impl Fn(&L) -> Option<Value>) -> Option<bool> {
     match eval(expr, leaf)? {
         Value::Bool(b) => Some(b),
-        Value::Int(_) | Value::Enum(_) => None,
+        Value::Int(_) | Value::Enum(_) | Value::Real(_) => None,
     }
 }
 
 fn int<L>(expr: &Expr<L>, leaf: &impl Fn(&L) -> Option<Value>) -> Option<i64> {
     match eval(expr, leaf)? {
         Value::Int(n) => Some(n),
-        Value::Bool(_) | Value::Enum(_) => None,
+        Value::Bool(_) | Value::Enum(_) | Value::Real(_) => None,
     }
 }
 
@@ -65,6 +68,9 @@ fn compare(op: Comparison, a: Value, b: Value) -> Option<bool> {
         (Comparison::Eq, Value::Int(a), Value::Int(b)) => Some(a == b),
         (Comparison::Lt, Value::Int(a), Value::Int(b)) => Some(a < b),
         (Comparison::Le, Value::Int(a), Value::Int(b)) => Some(a <= b),
+        (Comparison::Eq, Value::Real(a), Value::Real(b)) => Some(a == b),
+        (Comparison::Lt, Value::Real(a), Value::Real(b)) => Some(a < b),
+        (Comparison::Le, Value::Real(a), Value::Real(b)) => Some(a <= b),
         (Comparison::Eq, Value::Enum(a), Value::Enum(b)) => Some(a == b),
         (Comparison::Eq, Value::Bool(a), Value::Bool(b)) => Some(a == b),
         _ => None,

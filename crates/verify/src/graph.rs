@@ -2,7 +2,7 @@
 
 use crate::eval::{eval, truth};
 use crate::report::{Error, Stop};
-use hyperplan_problem::{ActionId, Expr, Leaf, System, Type, Update, Value, VarId};
+use hyperplan_problem::{ActionId, Clause, Expr, Leaf, System, Type, Update, Value, VarId};
 use rustc_hash::FxHashMap;
 use std::rc::Rc;
 use typed_index_collections::TiVec;
@@ -72,7 +72,14 @@ pub(crate) struct Graph<'p> {
     pub(crate) limit: usize,
 }
 
-pub(crate) const ILL_TYPED: Error = Error::Malformed { what: "an expression of a system has no value" };
+/// Why an expression of a system has no value: in a finite system none may be without one.
+pub(crate) fn no_value(system: &System) -> Error {
+    if system.is_finite() {
+        Error::Malformed { what: "an expression of a system has no value" }
+    } else {
+        Error::Overflow { system: system.name.clone() }
+    }
+}
 
 impl<'p> Graph<'p> {
     /// Nothing seen yet; at most `limit` states will be.
@@ -103,13 +110,13 @@ impl<'p> Graph<'p> {
 
     /// Whether `init` holds.
     pub(crate) fn is_initial(&self, state: StateId) -> Result<bool, Stop> {
-        truth(&self.system.init, &|l| self.leaf(state, *l)).ok_or(Stop::Error(ILL_TYPED))
+        truth(&self.system.init, &|l| self.leaf(state, *l)).ok_or_else(|| no_value(self.system).into())
     }
 
     /// Whether each variable has a value of its type.
     pub(crate) fn is_state(&self, values: &[Value]) -> bool {
         values.len() == self.system.vars.len()
-            && self.system.vars.iter().zip(values).all(|(var, value)| belongs(&var.ty, *value))
+            && self.system.vars.iter().zip(values).all(|(var, value)| var.ty.contains(*value))
     }
 
     /// The id of a state, which must satisfy [`Graph::is_state`].
@@ -124,7 +131,8 @@ impl<'p> Graph<'p> {
         let mut labels = Vec::with_capacity(self.system.labels.len());
         // A label reads only labels before it.
         for label in &self.system.labels {
-            let holds = truth(&label.expr, &|l| read(&values, &labels, *l)).ok_or(ILL_TYPED)?;
+            let holds = truth(&label.expr, &|l| read(&values, &labels, *l));
+            let holds = holds.ok_or_else(|| no_value(self.system))?;
             labels.push(holds);
         }
         let id = self.nodes.push_and_get_key(Node {
@@ -161,17 +169,62 @@ impl<'p> Graph<'p> {
         self.nodes[state].moves.as_ref().map(|moves| moves.iter().any(|m| m.action == action))
     }
 
+    /// Whether there is a transition between two states, by the definition; without enumerating where else the
+    /// action leads.
+    pub(crate) fn has_step(&self, from: StateId, action: ActionId, to: StateId) -> Result<bool, Stop> {
+        let (here, there) = (&self.nodes[from].values, &self.nodes[to].values);
+        if self.holds(from, &self.system.absorb)? {
+            return Ok(self.system.actions.contains(&action) && here == there);
+        }
+        for clause in self.system.clauses.iter().filter(|c| c.actions.contains(&action)) {
+            if self.holds(from, &clause.guard)? && self.allows(from, clause, there)? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Whether a clause whose guard holds leads to these values, which are of their variables' types.
+    fn allows(&self, from: StateId, clause: &Clause, there: &[Value]) -> Result<bool, Stop> {
+        let here = &self.nodes[from].values;
+        for (var, (&old, &new)) in self.system.vars.keys().zip(here.iter().zip(there)) {
+            let allowed = match clause.updates.iter().find(|(updated, _)| *updated == var) {
+                None => old == new,
+                Some((_, Update::Assign(e))) => self.value(from, e)? == new,
+                Some((_, Update::OneOf(es))) => {
+                    let values: Vec<Value> =
+                        es.iter().map(|e| self.value(from, e)).collect::<Result<_, _>>()?;
+                    values.contains(&new)
+                }
+                Some((_, Update::Within(lo, hi))) => {
+                    self.value(from, lo)? <= new && new <= self.value(from, hi)?
+                }
+            };
+            if !allowed {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    fn value(&self, state: StateId, e: &Expr<Leaf>) -> Result<Value, Stop> {
+        eval(e, &|l| self.leaf(state, *l)).ok_or_else(|| no_value(self.system).into())
+    }
+
+    fn holds(&self, state: StateId, e: &Expr<Leaf>) -> Result<bool, Stop> {
+        truth(e, &|l| self.leaf(state, *l)).ok_or_else(|| no_value(self.system).into())
+    }
+
     /// Where each group of actions leads.
     fn targets(&self, state: StateId) -> Result<Vec<Target<'p>>, Stop> {
         let system = self.system;
         let here = &self.nodes[state].values;
-        let holds = |e: &Expr<Leaf>| truth(e, &|l| self.leaf(state, *l)).ok_or(ILL_TYPED);
-        if holds(&system.absorb)? {
+        if self.holds(state, &system.absorb)? {
             return Ok(vec![(&system.actions, here.to_vec())]);
         }
         let mut found = Vec::new();
         for clause in &system.clauses {
-            if !holds(&clause.guard)? {
+            if !self.holds(state, &clause.guard)? {
                 continue;
             }
             let mut targets = vec![here.to_vec()];
@@ -190,19 +243,24 @@ impl<'p> Graph<'p> {
         Ok(found)
     }
 
-    /// What an update allows, within the variable's type.
+    /// What an update allows, within the variable's type. Of real numbers there are too many between two.
     fn choices(&self, state: StateId, var: VarId, update: &Update) -> Result<Vec<Value>, Stop> {
-        let ty = &self.system.vars.get(var).ok_or(ILL_TYPED)?.ty;
-        let value = |e: &Expr<Leaf>| eval(e, &|l| self.leaf(state, *l)).ok_or(ILL_TYPED);
+        let ty = &self.system.vars.get(var).ok_or_else(|| no_value(self.system))?.ty;
         let mut values = match update {
-            Update::Assign(e) => vec![value(e)?],
-            Update::OneOf(es) => es.iter().map(value).collect::<Result<_, _>>()?,
-            Update::Within(lo, hi) => match ty {
-                Type::Range { lo: least, hi: most } => integers(*lo.max(least), *hi.min(most), self.limit)?,
-                Type::Bool | Type::Enum(_) => return Err(ILL_TYPED.into()),
+            Update::Assign(e) => vec![self.value(state, e)?],
+            Update::OneOf(es) => es.iter().map(|e| self.value(state, e)).collect::<Result<_, _>>()?,
+            Update::Within(lo, hi) => match (ty, self.value(state, lo)?, self.value(state, hi)?) {
+                (Type::Range { lo: least, hi: most }, Value::Int(lo), Value::Int(hi)) => {
+                    integers(lo.max(*least), hi.min(*most), self.limit)?
+                }
+                (Type::Int, Value::Int(lo), Value::Int(hi)) => integers(lo, hi, self.limit)?,
+                (Type::Real, lo, hi) if lo > hi => Vec::new(),
+                (Type::Real, lo, hi) if lo == hi => vec![lo],
+                (Type::Real, _, _) => return Err(Stop::Budget),
+                _ => return Err(no_value(self.system).into()),
             },
         };
-        values.retain(|v| belongs(ty, *v));
+        values.retain(|v| ty.contains(*v));
         Ok(values)
     }
 
@@ -292,15 +350,6 @@ fn with(values: &[Value], var: VarId, value: Value) -> Vec<Value> {
     let mut values = values.to_vec();
     values[usize::from(var)] = value;
     values
-}
-
-pub(crate) fn belongs(ty: &Type, value: Value) -> bool {
-    match (ty, value) {
-        (Type::Bool, Value::Bool(_)) => true,
-        (Type::Range { lo, hi }, Value::Int(n)) => (*lo..=*hi).contains(&n),
-        (Type::Enum(names), Value::Enum(i)) => (i as usize) < names.len(),
-        _ => false,
-    }
 }
 
 /// The integers `lo..=hi`, if there are no more than `limit`.

@@ -1,7 +1,7 @@
 //! Initial states: all assignments that satisfy `init`, found variable by variable.
 
 use crate::eval::{eval, truth};
-use crate::graph::{Graph, ILL_TYPED, StateId, belongs, integers};
+use crate::graph::{Graph, StateId, integers, no_value};
 use crate::report::Stop;
 use hyperplan_problem::{Comparison, Expr, LabelId, Leaf, Type, Value, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -11,19 +11,20 @@ impl Graph<'_> {
     /// All initial states, in the order of their values.
     pub(crate) fn initial_states(&mut self) -> Result<Vec<StateId>, Stop> {
         let mut domains = Vec::with_capacity(self.system.vars.len());
-        let fixed = self.fixed_by_init();
+        let (fixed, bounded) = self.plain_bounds();
         for (id, var) in self.system.vars.iter_enumerated() {
+            let range = |lo: i64, hi: i64| {
+                let (least, most) = bounded.get(&id).copied().unwrap_or((i64::MIN, i64::MAX));
+                integers(lo.max(least), hi.min(most), self.limit)
+            };
             let domain = match (fixed.get(&id), &var.ty) {
-                (Some(&value), ty) => {
-                    if belongs(ty, value) {
-                        vec![value]
-                    } else {
-                        Vec::new()
-                    }
-                }
+                (Some(&value), ty) if ty.contains(value) => vec![value],
+                (Some(_), _) => Vec::new(),
                 (None, Type::Bool) => vec![Value::Bool(false), Value::Bool(true)],
-                (None, Type::Range { lo, hi }) => integers(*lo, *hi, self.limit)?,
+                (None, Type::Range { lo, hi }) => range(*lo, *hi)?,
+                (None, Type::Int) => range(i64::MIN, i64::MAX)?,
                 (None, Type::Enum(names)) => (0..).zip(names.iter()).map(|(i, _)| Value::Enum(i)).collect(),
+                (None, Type::Real) => return Err(Stop::Budget),
             };
             domains.push(domain);
         }
@@ -60,7 +61,7 @@ impl Graph<'_> {
                         Some(false) => {
                             partial.pop();
                         }
-                        None if partial.len() == domains.len() => return Err(ILL_TYPED.into()),
+                        None if partial.len() == domains.len() => return Err(no_value(self.system).into()),
                         _ => next.push(0),
                     }
                 }
@@ -86,9 +87,11 @@ impl Graph<'_> {
         truth(&self.system.init, &|l| leaf(&labels, l))
     }
 
-    /// Variables that `init` plainly equates with a constant, so that large types need not be enumerated.
-    fn fixed_by_init(&self) -> FxHashMap<VarId, Value> {
+    /// What `init` says of single variables: values that they equal, and ranges of integers, so that large types
+    /// need not be enumerated.
+    fn plain_bounds(&self) -> (FxHashMap<VarId, Value>, FxHashMap<VarId, (i64, i64)>) {
         let mut fixed = FxHashMap::default();
+        let mut bounded: FxHashMap<VarId, (i64, i64)> = FxHashMap::default();
         let mut seen = FxHashSet::default();
         let mut conjuncts = vec![&self.system.init];
         while let Some(e) = conjuncts.pop() {
@@ -97,16 +100,24 @@ impl Graph<'_> {
                 Expr::Leaf(Leaf::Label(l)) if seen.insert(*l) => {
                     conjuncts.extend(self.system.labels.get(*l).map(|l| &l.expr))
                 }
-                Expr::Compare(Comparison::Eq, a, b) => match (&**a, &**b) {
-                    (Expr::Leaf(Leaf::Var(v)), Expr::Const(c))
-                    | (Expr::Const(c), Expr::Leaf(Leaf::Var(v))) => {
+                Expr::Compare(op, a, b) => match (op, &**a, &**b) {
+                    (Comparison::Eq, Expr::Leaf(Leaf::Var(v)), Expr::Const(c))
+                    | (Comparison::Eq, Expr::Const(c), Expr::Leaf(Leaf::Var(v))) => {
                         fixed.insert(*v, *c);
+                    }
+                    (op, Expr::Const(Value::Int(c)), Expr::Leaf(Leaf::Var(v))) => {
+                        let range = bounded.entry(*v).or_insert((i64::MIN, i64::MAX));
+                        range.0 = range.0.max(c + i64::from(*op == Comparison::Lt));
+                    }
+                    (op, Expr::Leaf(Leaf::Var(v)), Expr::Const(Value::Int(c))) => {
+                        let range = bounded.entry(*v).or_insert((i64::MIN, i64::MAX));
+                        range.1 = range.1.min(c - i64::from(*op == Comparison::Lt));
                     }
                     _ => {}
                 },
                 _ => {}
             }
         }
-        fixed
+        (fixed, bounded)
     }
 }

@@ -110,26 +110,29 @@ impl Joint {
         &self.deeds[deed]
     }
 
-    /// All joint moves.
+    /// All joint moves. A path that has ended stays where it is and takes no action.
     pub(crate) fn moves(
         &mut self,
         graphs: &mut TiVec<SystemId, Graph<'_>>,
         joint: JointId,
+        ended: &dyn Fn(PathId) -> bool,
     ) -> Result<Rc<[JointMove]>, Stop> {
-        if let Some(moves) = &self.moves[joint] {
+        let some_ended = self.paths.iter().any(|&(path, _)| ended(path));
+        if let Some(moves) = self.moves[joint].as_ref().filter(|_| !some_ended) {
             return Ok(moves.clone());
         }
         let mut options: Vec<Options> = Vec::with_capacity(self.paths.len());
         let states = self.states[joint].clone();
-        for (i, &(_, system)) in self.paths.iter().enumerate() {
+        for (i, &(path, system)) in self.paths.iter().enumerate() {
             let graph = &mut graphs[system];
             options.push(match states.get(i) {
+                Some(&state) if ended(path) => vec![(None, state)],
                 Some(&state) => graph.moves(state)?.iter().map(|m| (Some(m.action), m.to)).collect(),
                 None => graph.initial_states()?.into_iter().map(|state| (None, state)).collect(),
             });
         }
         let moves = self.product(&options)?;
-        if self.remembered + moves.len() <= REMEMBERED_MOVES {
+        if !some_ended && self.remembered + moves.len() <= REMEMBERED_MOVES {
             self.remembered += moves.len();
             self.moves[joint] = Some(moves.clone());
         }

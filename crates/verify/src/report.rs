@@ -156,6 +156,12 @@ pub enum Error {
         /// Steps that it needs.
         needed: u64,
     },
+    /// A number on the way does not fit into 64 bits.
+    #[error("a number of system {system} does not fit into 64 bits; it cannot be checked")]
+    Overflow {
+        /// The system.
+        system: String,
+    },
     /// The problem breaks its own contract; no lowered problem does.
     #[error("the problem is not well-formed: {what}")]
     Malformed {

@@ -2,6 +2,7 @@
 
 use crate::atoms::{Atom, translate};
 use crate::graph::{Graph, StateId};
+use crate::horizon::horizon;
 use crate::joint::{DeedId, JointId};
 use crate::level::{Level, levels};
 use crate::progress::Progress;
@@ -55,6 +56,9 @@ pub(crate) struct Search<'p> {
     pub(crate) recent: Recent,
     pub(crate) systems: TiVec<PathId, SystemId>,
     pub(crate) mode: Mode,
+    /// Where paths of systems with infinitely many states end, where there is no `within`: at their horizon.
+    pub(crate) ends: TiVec<PathId, Option<u64>>,
+    pub(crate) reads_enabled: bool,
     pub(crate) time: u32,
     /// Where each path is, and what it just did; no state where its trace has ended.
     pub(crate) states: TiVec<PathId, Option<StateId>>,
@@ -92,12 +96,14 @@ impl<'p> Search<'p> {
             fixed_atoms: atoms.iter_enumerated().filter(|(_, a)| is_fixed(a)).map(|(id, _)| id).collect(),
             valuations: Valuations::new(atoms.len()),
             recent: Recent::new(),
+            reads_enabled: atoms.iter().any(|a| a.reads_enabled),
             atoms,
             residuals,
             root,
             progress: Progress::new(usize::try_from(budget.entries).unwrap_or(usize::MAX)),
             systems: objective.paths.iter().map(|p| p.system).collect(),
             mode: objective.mode,
+            ends: objective.paths.keys().map(|path| end(problem, objective, path)).collect(),
             time: 0,
             states: objective.paths.iter().map(|_| None).collect(),
             took: objective.paths.iter().map(|_| None).collect(),
@@ -170,12 +176,19 @@ impl<'p> Search<'p> {
             let state = trace.states.get(time).copied();
             self.states[trace.path] = state;
             self.took[trace.path] = time.checked_sub(1).and_then(|t| trace.actions.get(t)).copied();
-            if let Some(state) = state {
+            if let Some(state) = state.filter(|_| self.reads_enabled) {
                 self.graphs[self.systems[trace.path]].moves(state)?;
             }
         }
         Ok(self.fixed_part())
     }
+}
+
+/// Where a path ends that is neither infinite nor given a length: in a system with infinitely many states, where
+/// it cannot be said which states can go on for ever, a path has as many steps as the formula reads.
+pub(crate) fn end(problem: &Problem, objective: &Objective, path: PathId) -> Option<u64> {
+    let finite = problem.systems[objective.paths[path].system].is_finite();
+    (objective.mode == Mode::Bounded && !finite).then(|| horizon(objective, path))
 }
 
 /// The moves that lead to `last`, from time 0.

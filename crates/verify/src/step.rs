@@ -10,20 +10,24 @@ use crate::scene::Scene;
 use crate::search::Search;
 use crate::valuation::ValuationId;
 use crate::value::{Pair, ValueId};
-use hyperplan_problem::Mode;
+use hyperplan_problem::{Mode, PathId};
 use std::rc::Rc;
 
 impl Search<'_> {
     /// All joint moves of a block.
     pub(crate) fn joint_moves(&mut self, level: usize, joint: JointId) -> Result<Rc<[JointMove]>, Stop> {
-        self.levels[level].joint.moves(&mut self.graphs, joint)
+        let time = u64::from(self.time);
+        let ended = |path: PathId| self.ends[path].is_some_and(|end| time > end);
+        self.levels[level].joint.moves(&mut self.graphs, joint, &ended)
     }
 
-    /// How much further a prefix that ends at the present step must be able to go.
-    pub(crate) fn ahead(&self) -> Ahead {
-        match self.mode {
-            Mode::Bounded => Ahead::Forever,
-            Mode::Within(k) => Ahead::Steps(k.saturating_sub(self.time)),
+    /// How much further a prefix of a path that ends at the present step must be able to go.
+    pub(crate) fn ahead(&self, path: PathId) -> Ahead {
+        let left = |end: u64| u32::try_from(end.saturating_sub(self.time.into())).unwrap_or(u32::MAX);
+        match (self.mode, self.ends[path]) {
+            (Mode::Within(k), _) => Ahead::Steps(left(k.into())),
+            (Mode::Bounded, Some(end)) => Ahead::Steps(left(end)),
+            (Mode::Bounded, None) => Ahead::Forever,
         }
     }
 
@@ -60,10 +64,11 @@ impl Search<'_> {
 
     /// Makes a move, unless it leads to no path.
     fn place(&mut self, level: usize, mv: JointMove) -> Result<bool, Stop> {
-        let ahead = self.ahead();
-        let Level { joint, reads_enabled, .. } = &self.levels[level];
-        let deed = joint.deed(mv.deed);
-        for ((&(path, system), &state), &action) in joint.paths.iter().zip(joint.states(mv.to)).zip(deed) {
+        for at in 0..self.levels[level].joint.paths.len() {
+            let Level { joint, reads_enabled, .. } = &self.levels[level];
+            let (path, system) = joint.paths[at];
+            let (state, action) = (joint.states(mv.to)[at], joint.deed(mv.deed)[at]);
+            let ahead = self.ahead(path);
             let graph = &mut self.graphs[system];
             if !graph.can_go(state, ahead)? {
                 return Ok(false);

@@ -2,9 +2,10 @@
 
 use super::base::Actions;
 use super::diagnostics::suggest;
-use super::expr::{Context, mismatch, truth, typed};
+use super::expr::{Context, integer, mismatch, real, truth, typed};
+use super::sets::empty_range;
 use super::state::StateContext;
-use super::typed::{Typed, braces, known_int};
+use super::typed::{Typed, braces};
 use crate::expr::{Expr, Leaf, Type};
 use crate::ids::{ActionId, VarId};
 use crate::system::{Clause, System, Update};
@@ -114,10 +115,11 @@ fn lower_update(cx: &mut StateContext, update: &ast::Update) -> Option<(VarId, U
 fn of_type(cx: &mut StateContext, e: &ast::Expr, ty: &Type) -> Option<Expr<Leaf>> {
     let hint = match ty {
         Type::Enum(values) => Some(values),
-        Type::Bool | Type::Range { .. } => None,
+        Type::Bool | Type::Range { .. } | Type::Int => None,
+        Type::Real => return real(cx, e),
     };
     match (typed(cx, e, hint), ty) {
-        (Typed::Bool(e), Type::Bool) | (Typed::Int(e, _), Type::Range { .. }) => Some(e),
+        (Typed::Bool(e), Type::Bool) | (Typed::Int(e, _), Type::Range { .. } | Type::Int) => Some(e),
         (Typed::Enum(e, values), Type::Enum(expected)) if values == *expected => Some(e),
         (found, _) => {
             mismatch(cx, &found, &expected(ty), e.span);
@@ -129,43 +131,39 @@ fn of_type(cx: &mut StateContext, e: &ast::Expr, ty: &Type) -> Option<Expr<Leaf>
 fn expected(ty: &Type) -> String {
     match ty {
         Type::Bool => "a truth value".into(),
-        Type::Range { .. } => "an integer".into(),
+        Type::Range { .. } | Type::Int => "an integer".into(),
+        Type::Real => "a number".into(),
         Type::Enum(values) => format!("one of {}", braces(values)),
     }
 }
 
 /// `v' in LO..HI`
 fn within(cx: &mut StateContext, lo: &ast::Expr, hi: &ast::Expr, ty: &Type) -> Option<Update> {
-    let span = lo.span.to(hi.span);
-    if !matches!(ty, Type::Range { .. }) {
-        let message = format!("expected {}, found integers", expected(ty));
-        cx.error(Diagnostic::error("type-mismatch", span, message));
+    let span: Span = lo.span.to(hi.span);
+    let (from, to) = match ty {
+        Type::Range { .. } | Type::Int => {
+            let (from, to) = (integer(cx, lo), integer(cx, hi));
+            let (from, to) = (from?, to?);
+            (Typed::Int(from.0, from.1), Typed::Int(to.0, to.1))
+        }
+        Type::Real => {
+            let (from, to) = (real(cx, lo), real(cx, hi));
+            (Typed::Real(from?), Typed::Real(to?))
+        }
+        Type::Bool | Type::Enum(_) => {
+            let message = format!("expected {}, found a range of numbers", expected(ty));
+            cx.error(Diagnostic::error("type-mismatch", span, message));
+            return None;
+        }
+    };
+    if let Some(empty) = empty_range(&from, &to) {
+        cx.error(Diagnostic::error("empty-range", span, empty));
         return None;
     }
-    let (lo, hi) = (constant_end(cx, lo), constant_end(cx, hi));
-    let (lo, hi) = (lo?, hi?);
-    if lo > hi {
-        cx.error(Diagnostic::error("empty-range", span, format!("the range {lo}..{hi} is empty")));
-        return None;
-    }
-    Some(Update::Within(lo, hi))
-}
-
-fn constant_end(cx: &mut StateContext, e: &ast::Expr) -> Option<i64> {
-    let span: Span = e.span;
-    match typed(cx, e, None) {
-        Typed::Int(e, _) => {
-            let value = known_int(&e);
-            if value.is_none() {
-                let message = "a range of which an end varies is not supported yet";
-                let help = "list the values: `v' in {E, ...}`";
-                cx.error(Diagnostic::error("not-supported", span, message).with_help(help));
-            }
-            value
+    match (from, to) {
+        (Typed::Int(from, _) | Typed::Real(from), Typed::Int(to, _) | Typed::Real(to)) => {
+            Some(Update::Within(from, to))
         }
-        other => {
-            mismatch(cx, &other, "an integer", span);
-            None
-        }
+        _ => None,
     }
 }

@@ -1,12 +1,14 @@
-//! Constants: integers, known when the file is read.
+//! Constants: numbers, known when the file is read.
 
 use super::diagnostics::{Diagnostics, suggest};
-use super::expr::{Context, enter, mismatch, typed};
+use super::expr::{Context, enter, integer, numeric};
+use super::fractions;
 use super::labels::cyclic;
 use super::limits::Limits;
 use super::order;
-use super::typed::{EnumType, LIMIT, Typed, known_int};
+use super::typed::{EnumType, Typed, known_int};
 use super::walk::visit;
+use crate::expr::{Expr, Value};
 use hyperplan_syntax::ast::{self, ExprKind, Ident, Item};
 use hyperplan_syntax::{Diagnostic, Span};
 use rustc_hash::FxHashMap;
@@ -37,8 +39,8 @@ impl Overrides {
 /// A constant, or a parameter of a template that stands for a number.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Constant {
-    /// `None` where its value was refused already.
-    pub(crate) value: Option<i64>,
+    /// An integer or a real; `None` where its value was refused already.
+    pub(crate) value: Option<Value>,
     pub(crate) span: Span,
 }
 
@@ -57,7 +59,11 @@ impl Consts {
     /// As an expression; poisoned where the value was refused.
     pub(crate) fn typed<L>(&self, name: &str) -> Option<Typed<L>> {
         let constant = self.get(name)?;
-        Some(constant.value.map_or(Typed::Poison, Typed::int))
+        Some(match constant.value {
+            Some(Value::Int(n)) => Typed::int(n),
+            Some(Value::Real(r)) => Typed::real(r),
+            _ => Typed::Poison,
+        })
     }
 
     /// Adds or hides.
@@ -68,7 +74,7 @@ impl Consts {
     }
 
     /// Names and values.
-    pub(crate) fn values(&self) -> Vec<(String, i64)> {
+    pub(crate) fn values(&self) -> Vec<(String, Value)> {
         let value = |name: &String| Some((name.clone(), self.get(name)?.value?));
         self.names.iter().filter_map(value).collect()
     }
@@ -76,13 +82,15 @@ impl Consts {
     /// The value of a constant integer expression, or `None` after a message.
     pub(crate) fn evaluate(&self, e: &ast::Expr, diagnostics: &mut Diagnostics) -> Option<i64> {
         let mut cx = ConstContext { consts: self, diagnostics, limits: Limits::default() };
-        match typed(&mut cx, e, None) {
-            Typed::Int(value, _) => known_int(&value),
-            other => {
-                mismatch(&mut cx, &other, "an integer", e.span);
-                None
-            }
-        }
+        let (value, _) = integer(&mut cx, e)?;
+        known_int(&value)
+    }
+
+    /// The value of a constant expression, an integer or a real, or `None` after a message.
+    pub(crate) fn number(&self, e: &ast::Expr, diagnostics: &mut Diagnostics) -> Option<Value> {
+        let mut cx = ConstContext { consts: self, diagnostics, limits: Limits::default() };
+        let (Typed::Int(value, _) | Typed::Real(value)) = numeric(&mut cx, e)?.typed() else { return None };
+        if let Expr::Const(value) = value { Some(value) } else { None }
     }
 }
 
@@ -119,7 +127,7 @@ pub(crate) fn constants(file: &ast::File, overrides: &Overrides, diagnostics: &m
         let constant = declared[index];
         let value = match replaced.get(constant.name.name.as_str()) {
             Some(value) => *value,
-            None => consts.evaluate(&constant.value, diagnostics),
+            None => consts.number(&constant.value, diagnostics),
         };
         consts.insert(&constant.name.name, Constant { value, span: constant.name.span });
     }
@@ -154,7 +162,7 @@ fn read_overrides<'a>(
     file: &ast::File,
     overrides: &'a Overrides,
     diagnostics: &mut Diagnostics,
-) -> FxHashMap<&'a str, Option<i64>> {
+) -> FxHashMap<&'a str, Option<Value>> {
     let declared: Vec<&str> = file
         .items
         .iter()
@@ -168,9 +176,11 @@ fn read_overrides<'a>(
             diagnostics.push(suggest(diagnostic, name, declared.iter().copied()));
             continue;
         }
-        let value = text.trim().parse::<i64>().ok().filter(|v| i128::from(*v).abs() <= LIMIT);
+        let value = fractions::number(text.trim());
         if value.is_none() {
-            let message = format!("cannot set `{name}` to `{text}`: not an integer of at most 62 bits");
+            let message = format!(
+                "cannot set `{name}` to `{text}`: not a number, such as 8 or 1/4, of at most 62 bits"
+            );
             diagnostics.push(Diagnostic::error_nowhere("not-a-number", message));
         }
         replaced.insert(name.as_str(), value);

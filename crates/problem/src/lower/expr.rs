@@ -1,10 +1,11 @@
 //! Typing expressions, whatever their names stand for: constants, states and paths share this.
 
 use super::diagnostics::Diagnostics;
+use super::fractions;
 use super::limits::Limits;
 use super::sets::membership;
-use super::typed::{self, Bounds, EnumType, LIMIT, Typed, braces, known_int};
-use crate::expr::{Comparison, Expr, Value};
+use super::typed::{self, Bounded, EnumType, LIMIT, Typed, braces, known_int};
+use crate::expr::{Comparison, Expr, Rational, Value};
 use hyperplan_syntax::ast::{self, ArithOp, CompareOp, ExprKind, Ident};
 use hyperplan_syntax::{Diagnostic, Span};
 
@@ -144,7 +145,7 @@ pub(crate) fn truth<C: Context>(cx: &mut C, e: &ast::Expr) -> Option<Expr<C::Lea
 }
 
 /// An integer with its bounds, or `None` after a message.
-pub(crate) fn integer<C: Context>(cx: &mut C, e: &ast::Expr) -> Option<(Expr<C::Leaf>, Bounds)> {
+pub(crate) fn integer<C: Context>(cx: &mut C, e: &ast::Expr) -> Option<Bounded<C::Leaf>> {
     match typed(cx, e, None) {
         Typed::Int(expr, bounds) => Some((expr, bounds)),
         other => {
@@ -152,6 +153,53 @@ pub(crate) fn integer<C: Context>(cx: &mut C, e: &ast::Expr) -> Option<(Expr<C::
             None
         }
     }
+}
+
+/// A number of either type.
+pub(crate) enum Number<L> {
+    Int(Bounded<L>),
+    Real(Expr<L>),
+}
+
+impl<L> Number<L> {
+    pub(crate) fn typed(self) -> Typed<L> {
+        match self {
+            Number::Int((e, bounds)) => Typed::Int(e, bounds),
+            Number::Real(e) => Typed::Real(e),
+        }
+    }
+
+    /// As a real; `None` where the integer is too large for that.
+    fn real(self) -> Option<Expr<L>> {
+        match self {
+            Number::Int((e, bounds)) => {
+                let fits = bounds.is_none_or(|b| b.magnitude() <= i128::from(fractions::MAX_CONVERTED));
+                fits.then(|| typed::to_real(e))
+            }
+            Number::Real(e) => Some(e),
+        }
+    }
+}
+
+/// A number, or `None` after a message.
+pub(crate) fn numeric<C: Context>(cx: &mut C, e: &ast::Expr) -> Option<Number<C::Leaf>> {
+    match typed(cx, e, None) {
+        Typed::Int(expr, bounds) => Some(Number::Int((expr, bounds))),
+        Typed::Real(expr) => Some(Number::Real(expr)),
+        other => {
+            mismatch(cx, &other, "a number", e.span);
+            None
+        }
+    }
+}
+
+/// A real number, or `None` after a message.
+pub(crate) fn real<C: Context>(cx: &mut C, e: &ast::Expr) -> Option<Expr<C::Leaf>> {
+    let real = numeric(cx, e)?.real();
+    if real.is_none() {
+        overflow(cx, e.span);
+    }
+    real
 }
 
 /// Says that something of another type was expected, unless it is poisoned.
@@ -179,14 +227,13 @@ fn both<C: Context>(
 }
 
 fn number<C: Context>(cx: &mut C, digits: &str, span: Span) -> Typed<C::Leaf> {
-    if digits.contains('.') {
-        let message = "real numbers are not supported yet";
-        return cx.error(Diagnostic::error("not-supported", span, message));
-    }
-    match digits.parse::<i64>() {
-        Ok(n) if i128::from(n) <= LIMIT => Typed::int(n),
-        _ => cx.error(Diagnostic::error("number-too-large", span, "the number does not fit in 62 bits")),
-    }
+    let number = match digits.split_once('.') {
+        Some(_) => fractions::decimal(digits).map(Typed::real),
+        None => digits.parse().ok().filter(|n| i128::from(*n) <= LIMIT).map(Typed::int),
+    };
+    number.unwrap_or_else(|| {
+        cx.error(Diagnostic::error("number-too-large", span, "the number does not fit in 62 bits"))
+    })
 }
 
 fn named<C: Context>(cx: &mut C, name: &str, span: Span, hint: Option<&EnumType>) -> Typed<C::Leaf> {
@@ -280,13 +327,15 @@ pub(crate) fn compare_typed<C: Context>(
     let negate = |e| if op == CompareOp::Ne { typed::not(e) } else { e };
     match (left, right) {
         (Typed::Poison, _) | (_, Typed::Poison) => Typed::Poison,
-        (Typed::Int(a, _), Typed::Int(b, _)) => Typed::Bool(match op {
-            CompareOp::Eq | CompareOp::Ne => negate(make(Comparison::Eq, a, b)),
-            CompareOp::Lt => make(Comparison::Lt, a, b),
-            CompareOp::Le => make(Comparison::Le, a, b),
-            CompareOp::Gt => make(Comparison::Lt, b, a),
-            CompareOp::Ge => make(Comparison::Le, b, a),
-        }),
+        (Typed::Int(a, _), Typed::Int(b, _)) => {
+            let (comparison, a, b) = ordered(op, a, b);
+            Typed::Bool(negate(make(comparison, a, b)))
+        }
+        (left @ (Typed::Int(..) | Typed::Real(_)), right @ (Typed::Int(..) | Typed::Real(_))) => {
+            let reals = as_real(left).zip(as_real(right)).map(|(a, b)| ordered(op, a, b));
+            let compared = reals.and_then(|(comparison, a, b)| fractions::compare(comparison, a, b));
+            compared.map_or_else(|| overflow(cx, span), |e| Typed::Bool(negate(e)))
+        }
         (Typed::Enum(a, t), Typed::Enum(b, u)) if equality && t == u => {
             Typed::Bool(negate(make(Comparison::Eq, a, b)))
         }
@@ -296,7 +345,7 @@ pub(crate) fn compare_typed<C: Context>(
             let message = if equality {
                 format!("cannot compare {left} with {right}")
             } else {
-                format!("only integers have an order, not {left} and {right}")
+                format!("only numbers have an order, not {left} and {right}")
             };
             cx.error(Diagnostic::error("type-mismatch", span, message))
         }
@@ -304,61 +353,122 @@ pub(crate) fn compare_typed<C: Context>(
 }
 
 /// The message about arithmetic that may leave 62 bits.
-fn overflow<C: Context>(cx: &mut C, span: Span) -> Typed<C::Leaf> {
+pub(crate) fn overflow<C: Context>(cx: &mut C, span: Span) -> Typed<C::Leaf> {
     let message = "the value may not fit in 62 bits";
     cx.error(Diagnostic::error("number-too-large", span, message).with_help("make the ranges smaller"))
 }
 
-fn negated<C: Context>(cx: &mut C, a: &ast::Expr, span: Span) -> Typed<C::Leaf> {
-    let Some((a, bounds)) = integer(cx, a) else { return Typed::Poison };
-    match typed::scale(-1, a, bounds) {
-        Some((e, bounds)) => Typed::Int(e, bounds),
-        None => overflow(cx, span),
+/// The comparison with its sides in order; `!=` as `==`.
+fn ordered<L>(op: CompareOp, a: Expr<L>, b: Expr<L>) -> (Comparison, Expr<L>, Expr<L>) {
+    match op {
+        CompareOp::Eq | CompareOp::Ne => (Comparison::Eq, a, b),
+        CompareOp::Lt => (Comparison::Lt, a, b),
+        CompareOp::Le => (Comparison::Le, a, b),
+        CompareOp::Gt => (Comparison::Lt, b, a),
+        CompareOp::Ge => (Comparison::Le, b, a),
     }
+}
+
+fn as_real<L>(number: Typed<L>) -> Option<Expr<L>> {
+    match number {
+        Typed::Int(e, bounds) => Number::Int((e, bounds)).real(),
+        Typed::Real(e) => Some(e),
+        _ => None,
+    }
+}
+
+fn negated<C: Context>(cx: &mut C, a: &ast::Expr, span: Span) -> Typed<C::Leaf> {
+    let Some(a) = numeric(cx, a) else { return Typed::Poison };
+    minus(a).map_or_else(|| overflow(cx, span), Number::typed)
+}
+
+fn minus<L>(number: Number<L>) -> Option<Number<L>> {
+    Some(match number {
+        Number::Int(e) => Number::Int(typed::scale(-1, e)?),
+        Number::Real(e) => Number::Real(typed::scale_real(-Rational::ONE, e)?),
+    })
 }
 
 fn sum<C: Context>(cx: &mut C, terms: &[(bool, ast::Expr)], span: Span) -> Typed<C::Leaf> {
-    let parts: Vec<_> = terms
-        .iter()
-        .map(|(minus, term)| {
-            let (e, bounds) = integer(cx, term)?;
-            if *minus { typed::scale(-1, e, bounds) } else { Some((e, bounds)) }
-        })
-        .collect();
+    let parts: Vec<_> = terms.iter().map(|(minus, term)| Some((*minus, numeric(cx, term)?))).collect();
     let Some(parts) = parts.into_iter().collect::<Option<Vec<_>>>() else { return Typed::Poison };
-    match typed::sum(parts) {
-        Some((e, bounds)) => Typed::Int(e, bounds),
-        None => overflow(cx, span),
+    added(parts).map_or_else(|| overflow(cx, span), Number::typed)
+}
+
+/// The sum of numbers, of which some count negatively: real where one of them is.
+fn added<L>(parts: Vec<(bool, Number<L>)>) -> Option<Number<L>> {
+    let parts = parts.into_iter().map(|(negative, n)| if negative { minus(n) } else { Some(n) });
+    let parts: Vec<Number<L>> = parts.collect::<Option<_>>()?;
+    if parts.iter().any(|n| matches!(n, Number::Real(_))) {
+        let reals = parts.into_iter().map(Number::real).collect::<Option<_>>()?;
+        return typed::sum_of_reals(reals).map(Number::Real);
     }
+    let integer = |n| if let Number::Int(e) = n { Some(e) } else { None };
+    typed::sum(parts.into_iter().map(integer).collect::<Option<_>>()?).map(Number::Int)
 }
 
 fn arith<C: Context>(cx: &mut C, op: ArithOp, a: &ast::Expr, b: &ast::Expr, span: Span) -> Typed<C::Leaf> {
-    if op == ArithOp::Divide {
-        let message = "`/` divides reals, which are not supported yet";
-        let help = "for integers write `div` (rounds down) or `%` (remainder)";
-        return cx.error(Diagnostic::error("not-supported", span, message).with_help(help));
+    match op {
+        ArithOp::Mul => product(cx, a, b, span),
+        ArithOp::Divide => fraction(cx, a, b, span),
+        ArithOp::Div | ArithOp::Mod => {
+            let (left, right) = (integer(cx, a), integer(cx, b));
+            let Some((left, (right, _))) = left.zip(right) else { return Typed::Poison };
+            let Some(by) = known_int(&right).filter(|by| *by > 0) else {
+                let message = "the divisor must be a positive constant";
+                return cx.error(Diagnostic::error("bad-divisor", b.span, message));
+            };
+            let divide = if op == ArithOp::Div { typed::quotient } else { typed::remainder };
+            let (e, bounds) = divide(left, by);
+            Typed::Int(e, bounds)
+        }
     }
-    let (left, right) = (integer(cx, a), integer(cx, b));
-    let Some(((left, lb), (right, rb))) = left.zip(right) else { return Typed::Poison };
-    if op == ArithOp::Mul {
-        let product = match (known_int(&left), known_int(&right)) {
-            (Some(factor), _) => typed::scale(factor, right, rb),
-            (_, Some(factor)) => typed::scale(factor, left, lb),
-            _ => {
-                let message = "a product of two things that vary is not linear";
-                let diagnostic = Diagnostic::error("nonlinear", span, message);
-                return cx.error(diagnostic.with_help("one side of `*` must be a constant"));
-            }
-        };
-        return product.map_or_else(|| overflow(cx, span), |(e, bounds)| Typed::Int(e, bounds));
-    }
-    let Some(by) = known_int(&right).filter(|by| *by > 0) else {
-        let message = "the divisor must be a positive constant";
-        return cx.error(Diagnostic::error("bad-divisor", b.span, message));
+}
+
+fn product<C: Context>(cx: &mut C, a: &ast::Expr, b: &ast::Expr, span: Span) -> Typed<C::Leaf> {
+    let (left, right) = (numeric(cx, a), numeric(cx, b));
+    let Some((left, right)) = left.zip(right) else { return Typed::Poison };
+    let product = match (left, right) {
+        (Number::Int(a), Number::Int(b)) => match (known_int(&a.0), known_int(&b.0)) {
+            (Some(factor), _) => typed::scale(factor, b).map(Number::Int),
+            (_, Some(factor)) => typed::scale(factor, a).map(Number::Int),
+            _ => return nonlinear(cx, span),
+        },
+        (a, b) => match a.real().zip(b.real()) {
+            Some((a, b)) => match (known_real(&a), known_real(&b)) {
+                (Some(factor), _) => typed::scale_real(factor, b).map(Number::Real),
+                (_, Some(factor)) => typed::scale_real(factor, a).map(Number::Real),
+                _ => return nonlinear(cx, span),
+            },
+            None => None,
+        },
     };
-    let divide = if op == ArithOp::Div { typed::quotient } else { typed::remainder };
-    let (e, bounds) = divide(left, lb, by);
-    Typed::Int(e, bounds)
+    product.map_or_else(|| overflow(cx, span), Number::typed)
+}
+
+fn nonlinear<C: Context>(cx: &mut C, span: Span) -> Typed<C::Leaf> {
+    let message = "a product of two things that vary is not linear";
+    let diagnostic = Diagnostic::error("nonlinear", span, message);
+    cx.error(diagnostic.with_help("one side of `*` must be a constant"))
+}
+
+/// `a / b`, a real number.
+fn fraction<C: Context>(cx: &mut C, a: &ast::Expr, b: &ast::Expr, span: Span) -> Typed<C::Leaf> {
+    let (left, right) = (real(cx, a), real(cx, b));
+    let Some((left, right)) = left.zip(right) else { return Typed::Poison };
+    let Some(by) = known_real(&right).filter(|by| *by != Rational::ZERO) else {
+        let message = "the divisor must be a constant other than 0";
+        let help = "for integers there are also `div` (rounds down) and `%` (remainder)";
+        return cx.error(Diagnostic::error("bad-divisor", b.span, message).with_help(help));
+    };
+    typed::scale_real(by.recip(), left).map_or_else(|| overflow(cx, span), Typed::Real)
+}
+
+fn known_real<L>(e: &Expr<L>) -> Option<Rational> {
+    match e {
+        Expr::Const(Value::Real(r)) => Some(*r),
+        _ => None,
+    }
 }
 
 fn choice<C: Context>(
@@ -374,7 +484,15 @@ fn choice<C: Context>(
     match (a, b) {
         (Typed::Poison, _) | (_, Typed::Poison) => Typed::Poison,
         (Typed::Bool(a), Typed::Bool(b)) => Typed::Bool(typed::choice(c, a, b)),
-        (Typed::Int(a, ab), Typed::Int(b, bb)) => Typed::Int(typed::choice(c, a, b), ab.hull(bb)),
+        (Typed::Int(a, ab), Typed::Int(b, bb)) => {
+            Typed::Int(typed::choice(c, a, b), ab.zip(bb).map(|(a, b)| a.hull(b)))
+        }
+        (a @ (Typed::Int(..) | Typed::Real(_)), b @ (Typed::Int(..) | Typed::Real(_))) => {
+            match as_real(a).zip(as_real(b)) {
+                Some((a, b)) => Typed::Real(typed::choice(c, a, b)),
+                None => overflow(cx, then.span.to(otherwise.span)),
+            }
+        }
         (Typed::Enum(a, t), Typed::Enum(b, u)) if t == u => Typed::Enum(typed::choice(c, a, b), t),
         (a, b) => {
             let message = format!("one case is {}, the other {}", a.describe(), b.describe());

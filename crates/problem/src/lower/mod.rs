@@ -9,6 +9,7 @@ mod consts;
 mod diagnostics;
 mod expr;
 mod formula;
+mod fractions;
 mod labels;
 mod limits;
 mod maps;
@@ -30,8 +31,10 @@ mod walk;
 pub(crate) use base::{Actions, Base};
 pub use consts::Overrides;
 pub(crate) use diagnostics::Diagnostics;
+pub(crate) use fractions::number;
 pub use limits::{MAX_BOUND, MAX_DEPTH, MAX_NODES};
 
+use crate::expr::Value;
 use crate::ids::SystemId;
 use crate::prelude;
 use crate::problem::Problem;
@@ -77,7 +80,7 @@ pub struct Lowered {
     /// Errors and warnings, in the order found.
     pub diagnostics: Vec<Diagnostic>,
     /// Constants in the order of the file, with their values (replaced ones with what replaced them).
-    pub consts: Vec<(String, i64)>,
+    pub consts: Vec<(String, Value)>,
 }
 
 impl Lowered {

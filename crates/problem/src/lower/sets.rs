@@ -1,9 +1,9 @@
 //! `E in SET`.
 
-use super::expr::{Context, compare_typed, integer, mismatch, typed};
+use super::expr::{Context, compare_typed, integer, mismatch, numeric, typed};
 use super::limits::MAX_COPIES;
 use super::typed::{self as make, EnumType, Typed, known_int};
-use crate::expr::{Comparison, Expr, TupleSet, Value};
+use crate::expr::{Expr, Rational, TupleSet, Value};
 use hyperplan_syntax::ast::{self, CompareOp, ExprKind, Set};
 use hyperplan_syntax::{Diagnostic, Span};
 use std::sync::Arc;
@@ -45,21 +45,33 @@ fn in_range<C: Context>(
     hi: &ast::Expr,
     span: Span,
 ) -> Typed<C::Leaf> {
-    let (e, lo_typed, hi_typed) = (integer(cx, element), integer(cx, lo), integer(cx, hi));
-    let Some(((e, _), ((lo_expr, _), (hi_expr, _)))) = e.zip(lo_typed.zip(hi_typed)) else {
+    let (e, lo_typed, hi_typed) = (numeric(cx, element), numeric(cx, lo), numeric(cx, hi));
+    let Some((e, (lo_typed, hi_typed))) = e.zip(lo_typed.zip(hi_typed)) else { return Typed::Poison };
+    let (e, lo_typed, hi_typed) = (e.typed(), lo_typed.typed(), hi_typed.typed());
+    if let Some(empty) = empty_range(&lo_typed, &hi_typed) {
+        return cx.error(Diagnostic::error("empty-range", lo.span.to(hi.span), empty));
+    }
+    let (Typed::Int(inner, _) | Typed::Real(inner)) = &e else { return Typed::Poison };
+    if !may_copy(cx, inner, 2, span) {
         return Typed::Poison;
+    }
+    let above = compare_typed(cx, CompareOp::Le, lo_typed, e.clone(), span);
+    let below = compare_typed(cx, CompareOp::Le, e, hi_typed, span);
+    match (above, below) {
+        (Typed::Bool(above), Typed::Bool(below)) => Typed::Bool(make::and([above, below])),
+        _ => Typed::Poison,
+    }
+}
+
+/// What is wrong with a range of constants in the wrong order.
+pub(super) fn empty_range<L>(lo: &Typed<L>, hi: &Typed<L>) -> Option<String> {
+    let value = |end: &Typed<L>| match end {
+        Typed::Int(Expr::Const(Value::Int(n)), _) => Some(Rational::from(*n)),
+        Typed::Real(Expr::Const(Value::Real(r))) => Some(*r),
+        _ => None,
     };
-    if let (Some(a), Some(b)) = (known_int(&lo_expr), known_int(&hi_expr))
-        && a > b
-    {
-        let message = format!("the range {a}..{b} is empty");
-        return cx.error(Diagnostic::error("empty-range", lo.span.to(hi.span), message));
-    }
-    if !may_copy(cx, &e, 2, span) {
-        return Typed::Poison;
-    }
-    let above = make::compare(Comparison::Le, lo_expr, e.clone());
-    Typed::Bool(make::and([above, make::compare(Comparison::Le, e, hi_expr)]))
+    let (lo, hi) = (value(lo)?, value(hi)?);
+    (lo > hi).then(|| format!("the range {lo}..{hi} is empty"))
 }
 
 /// Whether an expression may be written so many times: nested sets would double it at every level.
@@ -130,6 +142,7 @@ fn in_list<C: Context>(cx: &mut C, element: &ast::Expr, members: &[ast::Expr], s
         match (&e, value) {
             (_, Typed::Poison) => poisoned = true,
             (Typed::Int(..), Typed::Int(v, _)) => known.extend(known_int(v)),
+            (Typed::Int(..) | Typed::Real(_), Typed::Int(..) | Typed::Real(_)) => {}
             (Typed::Bool(_), Typed::Bool(_)) => {}
             (Typed::Enum(_, t), Typed::Enum(_, u)) if t == u => {}
             (e, other) => {
@@ -158,7 +171,9 @@ fn one_of<C: Context>(
     values: Vec<(Typed<C::Leaf>, Span)>,
     span: Span,
 ) -> Typed<C::Leaf> {
-    let (Typed::Bool(inner) | Typed::Int(inner, _) | Typed::Enum(inner, _)) = e else { return Typed::Poison };
+    let (Typed::Bool(inner) | Typed::Int(inner, _) | Typed::Real(inner) | Typed::Enum(inner, _)) = e else {
+        return Typed::Poison;
+    };
     if !may_copy(cx, inner, values.len(), span) {
         return Typed::Poison;
     }

@@ -165,13 +165,8 @@ fn lower_type(cx: &mut StateContext, declaration: &ast::StateDecl) -> Option<Typ
             }
             Some(Type::Enum(values.iter().map(|v| v.name.clone()).collect()))
         }
-        ast::Type::Int | ast::Type::Real => {
-            let name = if declaration.ty == ast::Type::Int { "int" } else { "real" };
-            let message = format!("variables of type `{name}` are not supported yet");
-            let diagnostic = Diagnostic::error("not-supported", span, message);
-            cx.error(diagnostic.with_help("give the variable a range, such as `0..100`"));
-            None
-        }
+        ast::Type::Int => Some(Type::Int),
+        ast::Type::Real => Some(Type::Real),
     }
 }
 
@@ -258,7 +253,9 @@ fn lower_item(
         SystemItem::Observe(es) => {
             for e in es {
                 match typed(cx, e, None) {
-                    Typed::Bool(e) | Typed::Int(e, _) | Typed::Enum(e, _) => system.observe.push(e),
+                    Typed::Bool(e) | Typed::Int(e, _) | Typed::Real(e) | Typed::Enum(e, _) => {
+                        system.observe.push(e);
+                    }
                     Typed::Poison => {}
                 }
             }

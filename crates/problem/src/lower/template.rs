@@ -123,7 +123,7 @@ pub(super) fn bind<'a>(
             Some((Kind::Number, used)) => {
                 let words = format!("`{}` stands for a number", param.name);
                 diagnostics.enter_use(used, words);
-                let value = consts.evaluate(arg, diagnostics);
+                let value = consts.number(arg, diagnostics);
                 diagnostics.leave_use();
                 complete &= value.is_some();
                 visible.insert(&param.name, Constant { value, span: arg.span });

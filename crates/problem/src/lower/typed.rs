@@ -1,6 +1,6 @@
 //! Typed expressions while they are built: with the bounds of integers, and folded where constant.
 
-use crate::expr::{Comparison, Expr, Leaf, Type, Value};
+use crate::expr::{Comparison, Expr, Leaf, Rational, Type, Value};
 use std::sync::Arc;
 
 /// Integers stay within `-LIMIT..=LIMIT`, that is in 62 bits with the sign.
@@ -31,7 +31,7 @@ impl Bounds {
     }
 
     /// The greatest absolute value.
-    fn magnitude(self) -> i128 {
+    pub(crate) fn magnitude(self) -> i128 {
         i128::from(self.lo).abs().max(i128::from(self.hi).abs())
     }
 
@@ -46,13 +46,18 @@ impl Bounds {
     }
 }
 
+/// An integer with its bounds, where it has any.
+pub(crate) type Bounded<L> = (Expr<L>, Option<Bounds>);
+
 /// An expression with its type.
 #[derive(Clone, Debug)]
 pub(crate) enum Typed<L> {
     /// A truth value.
     Bool(Expr<L>),
-    /// An integer.
-    Int(Expr<L>, Bounds),
+    /// An integer, with its bounds where it has any.
+    Int(Expr<L>, Option<Bounds>),
+    /// A real number.
+    Real(Expr<L>),
     /// A value of an enumeration.
     Enum(Expr<L>, EnumType),
     /// Something that was reported already; whatever contains it is poisoned too, without a word.
@@ -62,15 +67,22 @@ pub(crate) enum Typed<L> {
 impl<L> Typed<L> {
     /// A known integer.
     pub(crate) fn int(value: i64) -> Self {
-        Typed::Int(Expr::Const(Value::Int(value)), Bounds::exactly(value))
+        Typed::Int(Expr::Const(Value::Int(value)), Some(Bounds::exactly(value)))
+    }
+
+    /// A known real.
+    pub(crate) fn real(value: Rational) -> Self {
+        Typed::Real(Expr::Const(Value::Real(value)))
     }
 
     /// Something of a declared type.
     pub(crate) fn of_type(expr: Expr<L>, ty: &Type) -> Self {
         match ty {
             Type::Bool => Typed::Bool(expr),
-            Type::Range { lo, hi } => Typed::Int(expr, Bounds { lo: *lo, hi: *hi }),
+            Type::Range { lo, hi } => Typed::Int(expr, Some(Bounds { lo: *lo, hi: *hi })),
             Type::Enum(values) => Typed::Enum(expr, values.clone()),
+            Type::Int => Typed::Int(expr, None),
+            Type::Real => Typed::Real(expr),
         }
     }
 
@@ -79,6 +91,7 @@ impl<L> Typed<L> {
         match self {
             Typed::Bool(_) => "a truth value".into(),
             Typed::Int(..) => "an integer".into(),
+            Typed::Real(_) => "a real number".into(),
             Typed::Enum(_, values) => format!("one of {}", braces(values)),
             Typed::Poison => "unknown".into(),
         }
@@ -163,11 +176,7 @@ pub(crate) fn iff<L>(a: Expr<L>, b: Expr<L>) -> Expr<L> {
 /// A comparison of two integers or enumeration values.
 pub(crate) fn compare<L>(op: Comparison, a: Expr<L>, b: Expr<L>) -> Expr<L> {
     if let (Expr::Const(a), Expr::Const(b)) = (&a, &b) {
-        return Expr::Const(Value::Bool(match op {
-            Comparison::Eq => a == b,
-            Comparison::Lt => a < b,
-            Comparison::Le => a <= b,
-        }));
+        return Expr::Const(Value::Bool(op.holds(*a, *b)));
     }
     Expr::Compare(op, Box::new(a), Box::new(b))
 }
@@ -181,35 +190,58 @@ pub(crate) fn choice<L>(condition: Expr<L>, then: Expr<L>, otherwise: Expr<L>) -
     }
 }
 
-/// A sum of integers, `None` where it may leave the limit. Every partial sum stays within it too.
-pub(crate) fn sum<L>(terms: Vec<(Expr<L>, Bounds)>) -> Option<(Expr<L>, Bounds)> {
-    let total: i128 = terms.iter().map(|(_, b)| b.magnitude()).sum();
-    if total > LIMIT {
-        return None;
-    }
-    let end = |f: fn(&Bounds) -> i64| terms.iter().map(|(_, b)| i128::from(f(b))).sum::<i128>();
-    let bounds = Bounds::new(end(|b| b.lo), end(|b| b.hi))?;
-    let mut constant = 0;
+/// A sum of integers, `None` where it may leave the limit. Every partial sum stays within it too. Without bounds, of
+/// variables of type `int`, there is no limit.
+pub(crate) fn sum<L>(terms: Vec<Bounded<L>>) -> Option<Bounded<L>> {
+    let bounds = match terms.iter().map(|(_, b)| *b).collect::<Option<Vec<Bounds>>>() {
+        None => None,
+        Some(all) if all.iter().map(|b| b.magnitude()).sum::<i128>() > LIMIT => return None,
+        Some(all) => {
+            let end = |f: fn(&Bounds) -> i64| all.iter().map(|b| i128::from(f(b))).sum::<i128>();
+            Some(Bounds::new(end(|b| b.lo), end(|b| b.hi))?)
+        }
+    };
+    let mut constant: i64 = 0;
     let mut rest = Vec::new();
     for (term, _) in terms {
         match known_int(&term) {
-            Some(n) => constant += n,
+            Some(n) => constant = constant.checked_add(n).filter(|c| i128::from(*c).abs() <= LIMIT)?,
             None => rest.push(term),
         }
     }
-    if rest.is_empty() {
-        return Some((Expr::Const(Value::Int(constant)), bounds));
-    }
-    if constant != 0 {
+    if constant != 0 || rest.is_empty() {
         rest.push(Expr::Const(Value::Int(constant)));
     }
-    let expr = if rest.len() == 1 { rest.swap_remove(0) } else { Expr::Add(rest) };
-    Some((expr, bounds))
+    Some((added(rest), bounds))
+}
+
+/// A sum of reals, `None` where constants leave 64 bits.
+pub(crate) fn sum_of_reals<L>(terms: Vec<Expr<L>>) -> Option<Expr<L>> {
+    let mut constant = Value::Real(Rational::ZERO);
+    let mut rest = Vec::new();
+    for term in terms {
+        match term {
+            Expr::Const(value) => constant = constant.checked_add(value)?,
+            term => rest.push(term),
+        }
+    }
+    if constant != Value::Real(Rational::ZERO) || rest.is_empty() {
+        rest.push(Expr::Const(constant));
+    }
+    Some(added(rest))
+}
+
+fn added<L>(mut terms: Vec<Expr<L>>) -> Expr<L> {
+    if terms.len() == 1 { terms.swap_remove(0) } else { Expr::Add(terms) }
 }
 
 /// A product with a constant, `None` where it may leave the limit.
-pub(crate) fn scale<L>(factor: i64, e: Expr<L>, bounds: Bounds) -> Option<(Expr<L>, Bounds)> {
-    let bounds = bounds.scaled(factor)?;
+pub(crate) fn scale<L>(factor: i64, (e, bounds): Bounded<L>) -> Option<Bounded<L>> {
+    let bounds = match bounds {
+        _ if factor == 0 => Some(Bounds::exactly(0)),
+        Some(bounds) => Some(bounds.scaled(factor)?),
+        None => None,
+    };
     let expr = match (factor, known_int(&e)) {
         (0, _) => Expr::Const(Value::Int(0)),
         (_, Some(n)) => Expr::Const(Value::Int(factor * n)),
@@ -219,9 +251,27 @@ pub(crate) fn scale<L>(factor: i64, e: Expr<L>, bounds: Bounds) -> Option<(Expr<
     Some((expr, bounds))
 }
 
+/// A product of a real with a constant, `None` where constants leave 64 bits.
+pub(crate) fn scale_real<L>(factor: Rational, e: Expr<L>) -> Option<Expr<L>> {
+    Some(match e {
+        _ if factor == Rational::ZERO => Expr::Const(Value::Real(factor)),
+        Expr::Const(value) => Expr::Const(value.checked_mul(Value::Real(factor))?),
+        e if factor == Rational::ONE => e,
+        e => Expr::Scale(factor, Box::new(e)),
+    })
+}
+
+/// An integer as a real.
+pub(crate) fn to_real<L>(e: Expr<L>) -> Expr<L> {
+    match known_int(&e) {
+        Some(n) => Expr::Const(Value::Real(Rational::from(n))),
+        None => Expr::ToReal(Box::new(e)),
+    }
+}
+
 /// Quotient by a positive constant, rounded down.
-pub(crate) fn quotient<L>(e: Expr<L>, bounds: Bounds, by: i64) -> (Expr<L>, Bounds) {
-    let bounds = Bounds { lo: bounds.lo.div_euclid(by), hi: bounds.hi.div_euclid(by) };
+pub(crate) fn quotient<L>((e, bounds): Bounded<L>, by: i64) -> Bounded<L> {
+    let bounds = bounds.map(|b| Bounds { lo: b.lo.div_euclid(by), hi: b.hi.div_euclid(by) });
     match known_int(&e) {
         Some(n) => (Expr::Const(Value::Int(n.div_euclid(by))), bounds),
         None => (Expr::Div(Box::new(e), by), bounds),
@@ -229,14 +279,13 @@ pub(crate) fn quotient<L>(e: Expr<L>, bounds: Bounds, by: i64) -> (Expr<L>, Boun
 }
 
 /// Remainder of [`quotient`].
-pub(crate) fn remainder<L>(e: Expr<L>, bounds: Bounds, by: i64) -> (Expr<L>, Bounds) {
+pub(crate) fn remainder<L>((e, bounds): Bounded<L>, by: i64) -> Bounded<L> {
     if let Some(n) = known_int(&e) {
         let n = n.rem_euclid(by);
-        return (Expr::Const(Value::Int(n)), Bounds::exactly(n));
+        return (Expr::Const(Value::Int(n)), Some(Bounds::exactly(n)));
     }
-    let small = bounds.lo >= 0 && bounds.hi < by;
-    let bounds = if small { bounds } else { Bounds { lo: 0, hi: by - 1 } };
-    (Expr::Mod(Box::new(e), by), bounds)
+    let small = bounds.filter(|b| b.lo >= 0 && b.hi < by);
+    (Expr::Mod(Box::new(e), by), Some(small.unwrap_or(Bounds { lo: 0, hi: by - 1 })))
 }
 
 /// Number of nodes of an expression, counted up to `limit`.

@@ -50,7 +50,8 @@ fn choices_are_bounded_by_the_type_and_absorbing_states_loop() {
     choosy.clauses = system(3, 2, &[(0, 0, 0)], &[0]).clauses.into_iter().collect();
     choosy.clauses[0].guard = Expr::TRUE;
     // s' in -5..5, of which 0..2 are values of s.
-    choosy.clauses[0].updates = vec![(S, Update::Within(-5, 5))];
+    choosy.clauses[0].updates =
+        vec![(S, Update::Within(Expr::Const(Value::Int(-5)), Expr::Const(Value::Int(5))))];
     let reaches = |n| F::X(b(F::At(0, n)));
     assert!(holds(choosy.clone(), "e", Mode::Bounded, &reaches(2)));
     assert!(!holds(choosy.clone(), "e", Mode::Bounded, &reaches(3)));

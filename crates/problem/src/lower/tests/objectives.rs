@@ -210,7 +210,7 @@ fn mistakes_in_objectives() {
         ("left == 1", "misplaced-action", "left"),
         ("nope(p)", "unknown-name", "nope"),
         ("x[p] + (F[0,1] goal[p]) == 1", "misplaced-temporal", "F[0,1] goal[p]"),
-        ("x[p] == 0.5", "not-supported", "0.5"),
+        ("x[p] == true + 0.5", "type-mismatch", "true"),
     ];
     for (body, code, marked) in cases {
         let found = codes(&format!("{ROOMS}objective o {{ exists p. {body} }}"));

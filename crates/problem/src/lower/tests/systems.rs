@@ -1,4 +1,4 @@
-use super::interpreter::{eval, labelled, states, successors};
+use super::interpreter::{eval, holds, labelled, states, successors};
 use super::{codes, lowered_with, ok};
 use crate::{Expr, Overrides, System, Type, Value};
 
@@ -117,17 +117,49 @@ fn a_long_chain_of_labels() {
 fn constants_and_overrides() {
     let text = "const T = 6; const V = 2 * T + 1; system S { state x: 0..V; }";
     let (lowered, _) = lowered_with(text, &[], &Overrides::none().with("T", 4));
-    assert_eq!(lowered.consts, [("T".to_owned(), 4), ("V".to_owned(), 9)]);
+    let int = |name: &str, n| (name.to_owned(), Value::Int(n));
+    assert_eq!(lowered.consts, [int("T", 4), int("V", 9)]);
     assert!(lowered.diagnostics.is_empty());
     let bad = Overrides::none().with("TT", 4).with("T", "four");
     let (lowered, _) = lowered_with(text, &[], &bad);
     let found: Vec<_> = lowered.diagnostics.iter().map(|d| (d.code, d.help.clone())).collect();
     assert_eq!(found, [("unknown-constant", Some("did you mean `T`?".to_owned())), ("not-a-number", None)]);
-    assert_eq!(ok("const A = B + 1; const B = 2;").consts, [("A".to_owned(), 3), ("B".to_owned(), 2)]);
+    assert_eq!(ok("const A = B + 1; const B = 2;").consts, [int("A", 3), int("B", 2)]);
     assert_eq!(codes("const A = B; const B = C; const C = B;"), [("cyclic-constant", "B".to_owned())]);
     assert_eq!(codes("const A = A;"), [("cyclic-constant", "A".to_owned())]);
     assert_eq!(codes("// nothing\n")[0].0, "empty-file");
-    assert_eq!(ok("const A = if 2 > 1 & 5 in 0..9 then 7 % 4 else 0;").consts, [("A".to_owned(), 3)]);
+    assert_eq!(ok("const A = if 2 > 1 & 5 in 0..9 then 7 % 4 else 0;").consts, [int("A", 3)]);
+}
+
+#[test]
+fn fractions_are_exact() {
+    let (lowered, _) = lowered_with("const V = 0.1; const H = 3 * V / 2;", &[], &Overrides::none());
+    let real = |name: &str, n, d| (name.to_owned(), Value::Real(crate::Rational::new(n, d)));
+    assert_eq!(lowered.consts, [real("V", 1, 10), real("H", 3, 20)]);
+    let halved = Overrides::none().with("V", "-1/2");
+    let (lowered, _) = lowered_with("const V = 0.1; const H = V + 1;", &[], &halved);
+    assert_eq!(lowered.consts, [real("V", -1, 2), real("H", 1, 2)]);
+    // Without real variables, comparisons of fractions become comparisons of integers.
+    let text =
+        "system S { state x: 0..9, y: 0..9; label l = (x + 1/2) / 3 <= 2 - 0.5 * y; label m = x < 7/2; }";
+    let system = system(text);
+    for state in states(&system) {
+        let (Value::Int(x), Value::Int(y)) = (state[0], state[1]) else { panic!("{state:?}") };
+        let holds_in =
+            |label: usize| holds(&system, &system.labels[crate::LabelId::from(label)].expr, &state);
+        assert_eq!(holds_in(0), 2 * x + 1 <= 12 - 3 * y, "{state:?}");
+        assert_eq!(holds_in(1), 2 * x < 7, "{state:?}");
+    }
+    let mut reals = 0;
+    for label in &system.labels {
+        let mut stack = vec![&label.expr];
+        while let Some(e) = stack.pop() {
+            reals +=
+                usize::from(matches!(e, Expr::Scale(..) | Expr::ToReal(_) | Expr::Const(Value::Real(_))));
+            stack.extend(e.children());
+        }
+    }
+    assert_eq!(reals, 0);
 }
 
 #[test]
@@ -157,8 +189,13 @@ fn mistakes_in_systems() {
         ("state x: 3..1;", "empty-range", "3..1"),
         ("state x: 0..M;", "unknown-name", "M"),
         ("state x: 0..2000000000000;", "number-too-large", "0..2000000000000"),
-        ("state x: int;", "not-supported", "int"),
-        ("state x: real;", "not-supported", "real"),
+        ("state x: real; label a = x % 2 == 0;", "type-mismatch", "x"),
+        ("state x: int, y: int; label a = x * y == 0;", "nonlinear", "x * y"),
+        ("state x: real, y: real; label a = x / y == 0;", "bad-divisor", "y"),
+        ("state x: real; label a = x / 0 == 0;", "bad-divisor", "0"),
+        ("state x: int; on step { x' = x + 0.5; }", "type-mismatch", "x + 0.5"),
+        ("state x: bool; on step { x' in 0..1; }", "type-mismatch", "0..1"),
+        ("state x: real; on step { x' in 1..0.5; }", "empty-range", "1..0.5"),
         ("state x: bool, x: bool;", "duplicate-name", "x"),
         ("state m: {a, b, a};", "duplicate-name", "a"),
         ("action a, a;", "duplicate-name", "a"),
@@ -174,8 +211,8 @@ fn mistakes_in_systems() {
         ("state x: 0..1, y: 0..1; label a = x * y == 1;", "nonlinear", "x * y"),
         ("state x: 0..1; label a = x div 0 == 1;", "bad-divisor", "0"),
         ("state x: 0..1; label a = 4 % x == 1;", "bad-divisor", "x"),
-        ("state x: 0..1; label a = x / 2 == 1;", "not-supported", "x / 2"),
-        ("state x: 0..1; label a = x == 0.5;", "not-supported", "0.5"),
+        ("state x: 0..1; label a = x / 2;", "type-mismatch", "x / 2"),
+        ("state x: 0..1; label a = x == 0.1234567890123456789;", "number-too-large", "0.1234567890123456789"),
         ("label a = 99999999999999999999 == 1;", "number-too-large", "99999999999999999999"),
         ("state x: 0..1000000000000; label a = x * 100000000 == 1;", "number-too-large", "x * 100000000"),
         ("state x: 0..1; on step { x' = true; }", "type-mismatch", "true"),
