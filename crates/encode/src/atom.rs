@@ -69,7 +69,7 @@ fn only_path(expr: &Expr<PathLeaf>) -> Option<PathId> {
     let mut path = None;
     let mut only = true;
     expr.for_each_leaf(&mut |leaf| match *leaf {
-        PathLeaf::State(p, _) | PathLeaf::Enabled(p, _) => {
+        PathLeaf::State(p, _) | PathLeaf::Enabled(p, _) | PathLeaf::Halted(p) => {
             only &= path.is_none_or(|known| known == p);
             path = Some(p);
         }
@@ -83,6 +83,7 @@ fn eval_on(system: &System, path: &ExplicitPath, expr: &Expr<PathLeaf>, state: u
     eval(expr, &mut |leaf| match *leaf {
         PathLeaf::State(_, leaf) => eval_in(system, &Expr::Leaf(leaf), path.graph.row(state)),
         PathLeaf::Enabled(_, action) => i64::from(path.graph.enables(state, action)),
+        PathLeaf::Halted(_) => i64::from(path.graph.halts(state)),
         // `only_path` lets nothing else through.
         PathLeaf::Took(..) | PathLeaf::SameAction(..) | PathLeaf::SameState(..) => 0,
     })
@@ -169,18 +170,33 @@ impl AtTime<'_, '_> {
         match &self.atoms.path(path).shape {
             Shape::Explicit(p) => p.layers[time as usize].any(terms, |s| p.graph.enables(s, action)),
             Shape::Symbolic(p) => {
-                let system = self.atoms.system(path);
+                let enabled = self.enabled_moves(terms, path, p);
                 let moves = self.atoms.path(path).moves();
-                let state = &p.states[time as usize];
-                let enabled = self
-                    .atoms
-                    .enabled
-                    .entry((path, time))
-                    .or_insert_with(|| Rc::new(moves.enabled(terms, system, state)));
                 let own: Vec<Term> = moves.of_action(action).map(|at| enabled[at]).collect();
                 terms.or(&own)
             }
         }
+    }
+
+    fn halted(&mut self, terms: &mut Terms, path: PathId) -> Term {
+        let time = self.time as usize;
+        match &self.atoms.path(path).shape {
+            Shape::Explicit(p) => p.layers[time].any(terms, |s| p.graph.halts(s)),
+            Shape::Symbolic(p) => {
+                let enabled = self.enabled_moves(terms, path, p);
+                let moves = self.atoms.path(path).moves();
+                moves.halted(terms, self.atoms.system(path), &p.states[time], &enabled)
+            }
+        }
+    }
+
+    /// For each move of the path's system, whether it can be made now.
+    fn enabled_moves(&mut self, terms: &mut Terms, path: PathId, symbolic: &SymbolicPath) -> Rc<Vec<Term>> {
+        let system = self.atoms.system(path);
+        let moves = self.atoms.path(path).moves();
+        let state = &symbolic.states[self.time as usize];
+        let known = self.atoms.enabled.entry((path, self.time));
+        known.or_insert_with(|| Rc::new(moves.enabled(terms, system, state))).clone()
     }
 
     /// An expression over one enumerated path, by the value that it has in each state.
@@ -208,6 +224,7 @@ impl Leaves<PathLeaf> for AtTime<'_, '_> {
             PathLeaf::SameAction(p, q) => Val::Bool(self.same_action(terms, p, q)),
             PathLeaf::SameState(p, q) => Val::Bool(self.same_state(terms, p, q)),
             PathLeaf::Enabled(p, action) => Val::Bool(self.enabled(terms, p, action)),
+            PathLeaf::Halted(p) => Val::Bool(self.halted(terms, p)),
             PathLeaf::State(p, leaf) => match &self.atoms.path(p).shape {
                 Shape::Explicit(path) => self.by_state(terms, path, p, &Expr::Leaf(PathLeaf::State(p, leaf))),
                 Shape::Symbolic(path) => in_state(terms, self.atoms.system(p), path, self.time, leaf),
@@ -281,6 +298,7 @@ impl Leaves<PathLeaf> for OnRun<'_, '_> {
             _ if unread => truth(false),
             PathLeaf::Took(p, action) if p == self.path => truth(self.action == Some(action)),
             PathLeaf::Enabled(p, action) if p == self.path => truth(self.graph.enables(self.state, action)),
+            PathLeaf::Halted(p) if p == self.path => truth(self.graph.halts(self.state)),
             PathLeaf::SameAction(p, q) if self.other(p, q).is_some() => match (self.other(p, q), self.action)
             {
                 (Some(other), Some(action)) if other != self.path => {

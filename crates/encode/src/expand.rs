@@ -138,6 +138,7 @@ impl<'a> Search<'a> {
                     state.map(|s| eval_in(system, &Expr::Leaf(leaf), self.graph.row(s)))
                 }
                 PathLeaf::Enabled(_, action) => state.map(|s| i64::from(self.graph.enables(s, action))),
+                PathLeaf::Halted(_) => state.map(|s| i64::from(self.graph.halts(s))),
                 PathLeaf::Took(_, wanted) => match movement {
                     None => Some(0),
                     Some(Move::Act(action, _)) => Some(i64::from(action == wanted)),
@@ -244,7 +245,9 @@ fn determined_by(expr: &Expr<PathLeaf>, path: PathId) -> bool {
     let mut yes = true;
     expr.for_each_leaf(&mut |leaf| {
         yes &= match *leaf {
-            PathLeaf::State(p, _) | PathLeaf::Took(p, _) | PathLeaf::Enabled(p, _) => p == path,
+            PathLeaf::State(p, _) | PathLeaf::Took(p, _) | PathLeaf::Enabled(p, _) | PathLeaf::Halted(p) => {
+                p == path
+            }
             PathLeaf::SameAction(p, q) => p == path || q == path,
             PathLeaf::SameState(..) => false,
         };

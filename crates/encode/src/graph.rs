@@ -137,6 +137,12 @@ impl Graph {
         self.successors(state).iter().any(|(letter, _)| self.letters[*letter as usize].0 == action)
     }
 
+    /// Whether every transition of a state leads back to it; so too where there is none.
+    #[must_use]
+    pub fn halts(&self, state: StateIx) -> bool {
+        self.successors(state).iter().all(|&(_, next)| next == state)
+    }
+
     /// Whether every state is live.
     #[must_use]
     pub fn all_live(&self) -> bool {

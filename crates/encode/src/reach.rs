@@ -357,7 +357,7 @@ fn classify<const N: usize>(question: &Question<'_, N>, expr: &Expr<PathLeaf>) -
             only_state &= alone.is_none_or(|other| other == path);
             alone = Some(path);
         }
-        only_state &= matches!(leaf, PathLeaf::State(..) | PathLeaf::Enabled(..));
+        only_state &= matches!(leaf, PathLeaf::State(..) | PathLeaf::Enabled(..) | PathLeaf::Halted(_));
     });
     match alone.and_then(explored) {
         _ if !known => Reads::Unknown,
@@ -396,5 +396,6 @@ fn holds<const N: usize>(
         PathLeaf::Enabled(p, a) => {
             i64::from(place(p).is_some_and(|(graph, state, _)| graph.enables(state, a)))
         }
+        PathLeaf::Halted(p) => i64::from(place(p).is_some_and(|(graph, state, _)| graph.halts(state))),
     }) != 0
 }

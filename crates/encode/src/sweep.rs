@@ -285,9 +285,10 @@ impl<'s> Atom<'s> {
                 match leaf {
                     _ if p != path => atom.reads_others = true,
                     PathLeaf::Took(..) | PathLeaf::SameAction(..) => atom.reads_action = true,
-                    PathLeaf::State(..) | PathLeaf::SameState(..) | PathLeaf::Enabled(..) => {
-                        atom.reads_state = true;
-                    }
+                    PathLeaf::State(..)
+                    | PathLeaf::SameState(..)
+                    | PathLeaf::Enabled(..)
+                    | PathLeaf::Halted(_) => atom.reads_state = true,
                 }
             }
         });

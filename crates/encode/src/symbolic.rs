@@ -153,6 +153,33 @@ impl Moves {
         enabled
     }
 
+    /// Whether every move that can be made in a state, as [`Moves::enabled`] says, leads back to it.
+    pub(crate) fn halted(&self, terms: &mut Terms, system: &System, state: &[Val], enabled: &[Term]) -> Term {
+        let mut leaves = InState { system, state };
+        let mut parts = Vec::with_capacity(self.moves.len());
+        for (a_move, &possible) in self.moves.iter().zip(enabled) {
+            let Some((_, updates)) = &a_move.clause else { continue };
+            let mut unchanged = Vec::with_capacity(updates.len());
+            for (var, new) in updates {
+                let here = &state[usize::from(*var)];
+                match new {
+                    NewValue::Is(value) | NewValue::OneOf { value, .. } => {
+                        let value = translate(terms, value, &mut leaves);
+                        unchanged.push(same(terms, &value, here));
+                    }
+                    NewValue::Between { lo, hi } => {
+                        let (lo, hi) = (translate(terms, lo, &mut leaves), translate(terms, hi, &mut leaves));
+                        let range = bounds(&system.vars[*var].ty);
+                        unchanged.push(only(terms, here, &lo, &hi, range));
+                    }
+                }
+            }
+            let unchanged = terms.and(&unchanged);
+            parts.push(terms.implies(possible, unchanged));
+        }
+        terms.and(&parts)
+    }
+
     /// The first move of an action that can be made in a concrete state with these inputs, counted from the
     /// preferred one and around: its number and where it leads.
     pub(crate) fn preferred(
@@ -691,6 +718,18 @@ fn within(terms: &mut Terms, value: Val, range: Option<(i64, i64)>) -> Term {
             terms.and2(low, high)
         }
     }
+}
+
+/// Whether no value from `lo` to `hi` (some are) that is in the variable's range differs from the present one.
+fn only(terms: &mut Terms, here: &Val, lo: &Val, hi: &Val, range: Option<(i64, i64)>) -> Term {
+    let mut none_below = vec![compare(terms, Comparison::Le, here.clone(), lo.clone())];
+    let mut none_above = vec![compare(terms, Comparison::Le, hi.clone(), here.clone())];
+    if let Some((least, most)) = range {
+        none_below.push(equal(terms, here, least));
+        none_above.push(equal(terms, here, most));
+    }
+    let (none_below, none_above) = (terms.or(&none_below), terms.or(&none_above));
+    terms.and2(none_below, none_above)
 }
 
 /// Whether a symbol's value is one of the variable's type.

@@ -132,6 +132,7 @@ impl Names<PathLeaf> for PathNames<'_> {
             PathLeaf::SameAction(p, q) => format!("action[{}] == action[{}]", self.path(*p), self.path(*q)),
             PathLeaf::SameState(p, q) => format!("state[{}] == state[{}]", self.path(*p), self.path(*q)),
             PathLeaf::Enabled(p, a) => format!("{} in enabled[{}]", self.problem.actions[*a], self.path(*p)),
+            PathLeaf::Halted(p) => format!("halted[{}]", self.path(*p)),
         }
     }
 
@@ -140,7 +141,7 @@ impl Names<PathLeaf> for PathNames<'_> {
             PathLeaf::Took(..) | PathLeaf::SameAction(..) | PathLeaf::SameState(..) => {
                 Some(self.leaf(leaf).replacen("==", "!=", 1))
             }
-            PathLeaf::State(..) | PathLeaf::Enabled(..) => None,
+            PathLeaf::State(..) | PathLeaf::Enabled(..) | PathLeaf::Halted(_) => None,
         }
     }
 

@@ -111,6 +111,9 @@ pub enum PathLeaf {
     SameState(PathId, PathId),
     /// Whether the path's state has a transition with that action. The action is one of the path's system.
     Enabled(PathId, ActionId),
+    /// Whether every transition of the path's state leads back to it, a state without transitions included. It is
+    /// not written but comes from `semantics hpes | hopt`.
+    Halted(PathId),
 }
 
 impl PathLeaf {
@@ -118,7 +121,9 @@ impl PathLeaf {
     #[must_use]
     pub fn paths(self) -> [Option<PathId>; 2] {
         match self {
-            PathLeaf::State(p, _) | PathLeaf::Took(p, _) | PathLeaf::Enabled(p, _) => [Some(p), None],
+            PathLeaf::State(p, _) | PathLeaf::Took(p, _) | PathLeaf::Enabled(p, _) | PathLeaf::Halted(p) => {
+                [Some(p), None]
+            }
             PathLeaf::SameAction(p, q) | PathLeaf::SameState(p, q) => [Some(p), Some(q)],
         }
     }

@@ -16,7 +16,7 @@ pub(crate) struct Atom {
     pub(crate) reads_states: bool,
     /// Whether it reads the actions just taken.
     pub(crate) reads_actions: bool,
-    /// Whether it asks which actions are enabled.
+    /// Whether it asks which transitions there are.
     pub(crate) reads_enabled: bool,
 }
 
@@ -31,7 +31,7 @@ impl Atom {
             match leaf {
                 PathLeaf::State(..) | PathLeaf::SameState(..) => states = true,
                 PathLeaf::Took(..) | PathLeaf::SameAction(..) => actions = true,
-                PathLeaf::Enabled(..) => (states, enabled) = (true, true),
+                PathLeaf::Enabled(..) | PathLeaf::Halted(_) => (states, enabled) = (true, true),
             }
         });
         paths.sort_unstable();

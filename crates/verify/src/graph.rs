@@ -215,6 +215,11 @@ impl<'p> Graph<'p> {
         truth(e, &|l| self.leaf(state, *l)).ok_or_else(|| no_value(self.system).into())
     }
 
+    /// Whether no transition leads to another state; the state's moves must have been asked for.
+    pub(crate) fn halted(&self, state: StateId) -> Option<bool> {
+        self.nodes[state].moves.as_ref().map(|moves| moves.iter().all(|m| m.to == state))
+    }
+
     /// Where each group of actions leads.
     fn targets(&self, state: StateId) -> Result<Vec<Target<'p>>, Stop> {
         let system = self.system;

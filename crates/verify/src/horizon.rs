@@ -43,7 +43,9 @@ fn bound(interval: &Interval) -> u64 {
 /// The path variables that a leaf reads.
 pub(crate) fn paths_of(leaf: &PathLeaf) -> [Option<PathId>; 2] {
     match leaf {
-        PathLeaf::State(p, _) | PathLeaf::Took(p, _) | PathLeaf::Enabled(p, _) => [Some(*p), None],
+        PathLeaf::State(p, _) | PathLeaf::Took(p, _) | PathLeaf::Enabled(p, _) | PathLeaf::Halted(p) => {
+            [Some(*p), None]
+        }
         PathLeaf::SameAction(p, q) | PathLeaf::SameState(p, q) => [Some(*p), Some(*q)],
     }
 }

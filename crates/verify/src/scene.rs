@@ -43,6 +43,7 @@ impl<'a> Scene<'a> {
             PathLeaf::Enabled(p, action) => {
                 self.graphs[self.systems[p]].enabled(self.states[p]?, action).map(Value::Bool)
             }
+            PathLeaf::Halted(p) => self.graphs[self.systems[p]].halted(self.states[p]?).map(Value::Bool),
         }
     }
 }

@@ -8,7 +8,6 @@ use super::formula::number_of_steps;
 use super::limits::Limits;
 use super::paths::{Defines, Frame, PathContext};
 use super::template::{Bindings, bind};
-use crate::expr::PathLeaf;
 use crate::ids::{PathId, SystemId};
 use crate::objective::{Formula, Mode, Node, Objective, PathVar, Quantifier};
 use crate::system::System;
@@ -253,11 +252,9 @@ fn unused_paths(objective: &Objective, diagnostics: &mut Diagnostics) {
     let mut used: TiVec<PathId, bool> = objective.paths.iter().map(|_| false).collect();
     for node in &objective.formula.nodes {
         let Node::Atom(e) = node else { continue };
-        e.for_each_leaf(&mut |leaf| match leaf {
-            PathLeaf::State(p, _) | PathLeaf::Took(p, _) | PathLeaf::Enabled(p, _) => used[*p] = true,
-            PathLeaf::SameAction(p, q) | PathLeaf::SameState(p, q) => {
-                used[*p] = true;
-                used[*q] = true;
+        e.for_each_leaf(&mut |leaf| {
+            for path in leaf.paths().into_iter().flatten() {
+                used[path] = true;
             }
         });
     }
