@@ -133,11 +133,11 @@ impl LatestReads {
     }
 }
 
-/// Whether an atom reads anything of the path.
+/// Whether an atom reads anything of the path. Whether it has halted is asked by no atom that the objective writes.
 fn reads(expr: &Expr<PathLeaf>, path: PathId) -> bool {
     let mut found = false;
     expr.for_each_leaf(&mut |leaf| {
-        found |= leaf.paths().contains(&Some(path));
+        found |= leaf.paths().contains(&Some(path)) && !matches!(leaf, PathLeaf::Halted(_));
     });
     found
 }

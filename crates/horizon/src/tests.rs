@@ -20,7 +20,8 @@ fn objective(mode: Mode, build: impl FnOnce(&mut Formula)) -> Objective {
     let path =
         |name: &str, quantifier| PathVar { name: name.into(), quantifier, system: SystemId(0), span: SPAN };
     let paths = [path("p", Quantifier::Exists), path("q", Quantifier::Forall)];
-    Objective { name: "o".into(), paths: paths.into_iter().collect(), mode, formula, span: SPAN }
+    let paths = paths.into_iter().collect();
+    Objective { name: "o".into(), paths, mode, semantics: None, formula, span: SPAN }
 }
 
 fn steps(objective: &Objective) -> Vec<(Option<u64>, Option<u64>)> {

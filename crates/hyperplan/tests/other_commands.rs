@@ -14,6 +14,19 @@ fn horizon_explains_itself() {
 }
 
 #[test]
+fn horizon_tells_the_semantics() {
+    let run = |format: &str| {
+        let objective = ["--objective", "late_hpes", "--format", format];
+        hyperplan(&[&["horizon", "pass/semantics.hp"], &objective[..]].concat())
+    };
+    assert_eq!(run("text").stdout, "late_hpes\n  p  3 steps: within 3 semantics hpes\n");
+    let json: serde_json::Value = serde_json::from_str(&run("json").stdout).expect("an object");
+    assert_eq!(json["semantics"], "hpes");
+    // The last that the objective itself reads, not whether the path has halted.
+    assert_eq!(json["horizon"]["p"]["reads"], "x[p] == 3");
+}
+
+#[test]
 fn check_counts() {
     let run = hyperplan(&["check", "case-studies/iso-10.hp"]);
     assert_eq!((run.status, run.stderr.as_str()), (0, ""));

@@ -6,7 +6,7 @@ use crate::oracle::{Oracle, Stop};
 use crate::prepare::{no_dead_ends, without_paths};
 use hyperplan_encode::{self as encode, Encoder, Goal, Graph, Limits, inspect};
 use hyperplan_problem::{
-    FormulaId, Node, Objective, PathVar, Problem, Quantifier, System, SystemId, display,
+    Formula, FormulaId, Node, Objective, PathVar, Problem, Quantifier, System, SystemId, display,
 };
 use hyperplan_solver::{Deadline, Spec};
 use hyperplan_syntax::Diagnostic;
@@ -141,11 +141,20 @@ fn conjuncts(objective: &Objective, id: FormulaId) -> Vec<FormulaId> {
     let mut stack = vec![id];
     while let Some(id) = stack.pop() {
         match &objective.formula.nodes[id] {
-            Node::And(ids) => stack.extend(ids.iter().rev()),
+            // A conjunction that the translation of `semantics` made of one part is not taken apart.
+            Node::And(ids) if objective.semantics.is_none() || written(objective, id) => {
+                stack.extend(ids.iter().rev());
+            }
             _ => found.push(id),
         }
     }
     found
+}
+
+/// Whether a conjunction is one that the objective writes: then its parts have places of their own.
+fn written(objective: &Objective, id: FormulaId) -> bool {
+    let Formula { nodes, spans } = &objective.formula;
+    nodes[id].children().iter().all(|&part| spans[part] != spans[id])
 }
 
 /// Whether some paths, all chosen freely, answer the question with yes.

@@ -550,6 +550,7 @@ mod tests {
             name: "o".to_owned(),
             paths: ti_vec![path("p", Quantifier::Exists), path("q", Quantifier::Forall)],
             mode: Mode::Bounded,
+            semantics: None,
             formula,
             span,
         };

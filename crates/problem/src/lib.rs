@@ -16,7 +16,7 @@ mod system;
 pub use expr::{Comparison, Expr, Leaf, PathLeaf, Rational, State, TupleSet, Type, Value};
 pub use ids::{ActionId, FormulaId, LabelId, PathId, SystemId, VarId};
 pub use lower::{Loader, Lowered, NoFiles, Overrides, lower, read};
-pub use objective::{Formula, Interval, Mode, Node, Objective, PathVar, Quantifier, TemporalOp};
+pub use objective::{Formula, Interval, Mode, Node, Objective, PathVar, Quantifier, Semantics, TemporalOp};
 pub use problem::Problem;
 pub use strategy::{Strategy, Trace};
 pub use system::{Clause, Label, Map, System, Update, Var};

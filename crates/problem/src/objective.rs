@@ -47,6 +47,46 @@ pub enum Mode {
     Within(u32),
 }
 
+/// How a path of K steps stands for the infinite ones that it begins (`within K semantics S`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Semantics {
+    /// `pes`: nothing holds beyond K.
+    Pessimistic,
+    /// `opt`: everything holds beyond K.
+    Optimistic,
+    /// `hpes`: as `pes`, but the rest is known once every path has halted.
+    HaltingPessimistic,
+    /// `hopt`: as `opt`, but the rest is known once every path has halted.
+    HaltingOptimistic,
+}
+
+impl Semantics {
+    /// All of them.
+    pub const ALL: [Semantics; 4] = [
+        Semantics::Pessimistic,
+        Semantics::Optimistic,
+        Semantics::HaltingPessimistic,
+        Semantics::HaltingOptimistic,
+    ];
+
+    /// Its name in problem files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Semantics::Pessimistic => "pes",
+            Semantics::Optimistic => "opt",
+            Semantics::HaltingPessimistic => "hpes",
+            Semantics::HaltingOptimistic => "hopt",
+        }
+    }
+
+    /// The one with that name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Semantics> {
+        Semantics::ALL.into_iter().find(|s| s.name() == name)
+    }
+}
+
 /// An objective: a quantifier prefix and a formula.
 #[derive(Clone, Debug)]
 pub struct Objective {
@@ -56,7 +96,9 @@ pub struct Objective {
     pub paths: TiVec<PathId, PathVar>,
     /// How operators are read.
     pub mode: Mode,
-    /// The quantifier-free rest.
+    /// What `semantics` says, under [`Mode::Within`] only.
+    pub semantics: Option<Semantics>,
+    /// The quantifier-free rest, to be read as the mode says: it was translated where there are other semantics.
     pub formula: Formula,
     /// Its declaration.
     pub span: Span,
@@ -165,6 +207,25 @@ impl Node {
             }
             Node::And(xs) | Node::Or(xs) => xs.clone(),
             Node::Implies(a, b) | Node::Iff(a, b) | Node::Temporal(_, _, a, b) => vec![*a, *b],
+        }
+    }
+
+    /// The same node over other children.
+    #[must_use]
+    pub fn map_children(&self, f: impl Fn(FormulaId) -> FormulaId) -> Node {
+        let all = |ids: &[FormulaId]| ids.iter().map(|&id| f(id)).collect();
+        match self {
+            Node::Atom(e) => Node::Atom(e.clone()),
+            Node::Not(a) => Node::Not(f(*a)),
+            Node::And(ids) => Node::And(all(ids)),
+            Node::Or(ids) => Node::Or(all(ids)),
+            Node::Implies(a, b) => Node::Implies(f(*a), f(*b)),
+            Node::Iff(a, b) => Node::Iff(f(*a), f(*b)),
+            Node::Next(a) => Node::Next(f(*a)),
+            Node::WeakNext(a) => Node::WeakNext(f(*a)),
+            Node::Finally(i, a) => Node::Finally(*i, f(*a)),
+            Node::Globally(i, a) => Node::Globally(*i, f(*a)),
+            Node::Temporal(op, i, a, b) => Node::Temporal(*op, *i, f(*a), f(*b)),
         }
     }
 }

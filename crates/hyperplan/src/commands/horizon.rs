@@ -6,7 +6,7 @@ use crate::load::Loaded;
 use crate::output::Output;
 use hyperplan_horizon::{Horizon, horizons};
 use hyperplan_problem::answer::Ordered;
-use hyperplan_problem::{FormulaId, Mode, Objective};
+use hyperplan_problem::{FormulaId, Mode, Objective, Semantics};
 use serde::Serialize;
 
 pub(crate) fn run(args: &args::Horizon, out: &mut Output) -> Outcome {
@@ -25,6 +25,9 @@ pub(crate) fn run(args: &args::Horizon, out: &mut Output) -> Outcome {
 struct Report {
     file: String,
     objective: String,
+    /// What `semantics` says; left out where it does not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    semantics: Option<&'static str>,
     horizon: Ordered<PathHorizon>,
 }
 
@@ -55,6 +58,7 @@ impl Report {
         Report {
             file: loaded.file.clone(),
             objective: objective.name.clone(),
+            semantics: objective.semantics.map(Semantics::name),
             horizon: Ordered(horizon.collect()),
         }
     }
@@ -94,6 +98,9 @@ impl PathHorizon {
         }
         if let Mode::Within(k) = objective.mode {
             words.push_str(&format!(": within {k}"));
+            if let Some(semantics) = objective.semantics {
+                words.push_str(&format!(" semantics {}", semantics.name()));
+            }
         } else if !self.reason.is_empty() {
             let parts = self
                 .reason

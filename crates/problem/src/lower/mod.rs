@@ -17,6 +17,7 @@ mod objective;
 mod order;
 mod paths;
 mod ros;
+mod semantics;
 mod sets;
 mod special;
 mod state;

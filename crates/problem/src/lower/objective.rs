@@ -7,9 +7,10 @@ use super::diagnostics::suggest;
 use super::formula::number_of_steps;
 use super::limits::Limits;
 use super::paths::{Defines, Frame, PathContext};
+use super::semantics;
 use super::template::{Bindings, bind};
 use crate::ids::{PathId, SystemId};
-use crate::objective::{Formula, Mode, Node, Objective, PathVar, Quantifier};
+use crate::objective::{Formula, Mode, Node, Objective, PathVar, Quantifier, Semantics};
 use crate::system::System;
 use hyperplan_syntax::Diagnostic;
 use hyperplan_syntax::ast::{self, ExprKind, ObjectiveBody};
@@ -68,30 +69,39 @@ pub(super) fn lower_objective(
     objective
 }
 
-/// `within K`; `None` after a message.
-fn mode(shared: &Shared, ast: &ast::Objective, diagnostics: &mut Diagnostics) -> Option<Mode> {
-    if let Some(semantics) = &ast.semantics {
-        const KNOWN: [&str; 4] = ["pes", "opt", "hpes", "hopt"];
-        let diagnostic = if KNOWN.contains(&semantics.name.as_str()) {
-            let message = format!("`semantics {}` is not supported yet", semantics.name);
-            Diagnostic::error("not-supported", semantics.span, message)
-        } else {
-            let message = format!("no semantics `{}`", semantics.name);
-            suggest(Diagnostic::error("unknown-name", semantics.span, message), &semantics.name, KNOWN)
-        };
-        diagnostics.push(diagnostic);
-        return None;
+/// `within K [semantics S]`; `None` after a message.
+fn mode(
+    shared: &Shared,
+    ast: &ast::Objective,
+    diagnostics: &mut Diagnostics,
+) -> Option<(Mode, Option<Semantics>)> {
+    let semantics = ast.semantics.as_ref().map(|name| {
+        let known = Semantics::named(&name.name);
+        if known.is_none() {
+            let message = format!("no semantics `{}`", name.name);
+            let diagnostic = Diagnostic::error("unknown-name", name.span, message);
+            diagnostics.push(suggest(diagnostic, &name.name, Semantics::ALL.map(Semantics::name)));
+        }
+        known
+    });
+    let mode = match &ast.within {
+        None => Mode::Bounded,
+        Some(within) => {
+            let steps = shared.consts.evaluate(within, diagnostics)?;
+            Mode::Within(number_of_steps(steps, "the length", within.span, diagnostics)?)
+        }
+    };
+    match semantics {
+        None => Some((mode, None)),
+        Some(known) => Some((mode, Some(known?))),
     }
-    let Some(within) = &ast.within else { return Some(Mode::Bounded) };
-    let steps = shared.consts.evaluate(within, diagnostics)?;
-    number_of_steps(steps, "the length", within.span, diagnostics).map(Mode::Within)
 }
 
 fn lower_body(
     shared: &Shared,
     ast: &ast::Objective,
     body: &Body,
-    mode: Option<Mode>,
+    mode: Option<(Mode, Option<Semantics>)>,
     diagnostics: &mut Diagnostics,
 ) -> Option<Objective> {
     if body.quantifiers.is_empty() {
@@ -115,7 +125,7 @@ fn lower_body(
         frame,
         expanding: Vec::new(),
         // After a refused length nothing more is to be said about bounds.
-        mode: mode.unwrap_or(Mode::Within(0)),
+        mode: mode.map_or(Mode::Within(0), |m| m.0),
         formula: Formula::default(),
         diagnostics,
         limits: Limits::default(),
@@ -125,10 +135,29 @@ fn lower_body(
     if !complete {
         return None;
     }
-    let name = ast.name.name.clone();
-    let objective = Objective { name, paths, mode: mode?, formula, span: ast.name.span };
+    let (name, span) = (ast.name.name.clone(), ast.name.span);
+    let (mode, semantics) = mode?;
+    let mut objective = Objective { name, paths, mode, semantics, formula, span };
     unused_paths(&objective, diagnostics);
+    translate(&mut objective, diagnostics)?;
     Some(objective)
+}
+
+/// Gives a formula under other semantics the form that the mode asks for; `None` after a message.
+fn translate(objective: &mut Objective, diagnostics: &mut Diagnostics) -> Option<()> {
+    let (Mode::Within(steps), Some(semantics)) = (objective.mode, objective.semantics) else {
+        return Some(());
+    };
+    if objective.formula.nodes.len() > semantics::MAX_SOURCE {
+        let message = format!(
+            "more than {} parts once definitions are expanded, too many for `semantics`",
+            semantics::MAX_SOURCE
+        );
+        diagnostics.push(Diagnostic::error("too-large", objective.span, message));
+        return None;
+    }
+    objective.formula = semantics::compile(&objective.formula, steps, semantics, objective.paths.keys());
+    Some(())
 }
 
 /// The definitions in reach: those inside hide those before.

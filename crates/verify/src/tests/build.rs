@@ -98,7 +98,8 @@ pub(crate) fn problem(system: System, prefix: &str, mode: Mode, f: &F) -> Proble
     });
     let mut formula = Formula::default();
     push(f, &mut formula);
-    let objective = Objective { name: "o".into(), paths: paths.collect(), mode, formula, span: span() };
+    let (name, paths) = ("o".into(), paths.collect());
+    let objective = Objective { name, paths, mode, semantics: None, formula, span: span() };
     Problem {
         actions: system.actions.iter().map(|a| format!("a{}", a.0)).collect(),
         systems: vec![system].into(),

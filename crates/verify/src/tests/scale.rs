@@ -62,8 +62,14 @@ fn shortest(n: i64, horizon: u32) -> Problem {
     let path =
         |name: &str, quantifier| PathVar { name: name.into(), quantifier, system: SystemId(0), span: span() };
     let paths = vec![path("p", Quantifier::Exists), path("q", Quantifier::Forall)];
-    let objective =
-        Objective { name: "o".into(), paths: paths.into(), mode: Mode::Bounded, formula: f, span: span() };
+    let objective = Objective {
+        name: "o".into(),
+        paths: paths.into(),
+        mode: Mode::Bounded,
+        semantics: None,
+        formula: f,
+        span: span(),
+    };
     Problem {
         actions: ["right", "left", "up", "down"].map(String::from).to_vec().into(),
         systems: vec![grid(n)].into(),

@@ -2,6 +2,7 @@ mod display;
 mod grids;
 mod interpreter;
 mod objectives;
+mod semantics;
 mod systems;
 
 use crate::{Lowered, Overrides, read};

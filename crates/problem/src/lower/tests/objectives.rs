@@ -224,7 +224,7 @@ fn mistakes_in_headers_and_templates() {
         ("objective o { exists p, p. goal[p] }", "duplicate-name", "p"),
         ("objective o within 0 - 1 { exists p. F goal[p] }", "negative-bound", "0 - 1"),
         ("objective o within 3000000 { exists p. F goal[p] }", "bound-too-large", "3000000"),
-        ("objective o within T semantics pes { exists p. F goal[p] }", "not-supported", "pes"),
+        ("objective o within T semantics pess { exists p. F goal[p] }", "unknown-name", "pess"),
         ("objective o = shortest_pat(start, goal, T);", "unknown-template", "shortest_pat"),
         ("objective o = shortest_path(start, T);", "argument-count", "shortest_path"),
         ("objective o = shortest_path(start, 3, T);", "parameter-kind", "3"),
