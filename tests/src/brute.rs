@@ -15,9 +15,9 @@ pub struct Path {
 #[derive(Clone, Debug)]
 pub struct Brute<'a> {
     problem: &'a Problem,
-    edges: Vec<(usize, usize, usize)>,
+    pub(crate) edges: Vec<(usize, usize, usize)>,
     live: Vec<bool>,
-    steps: usize,
+    pub(crate) steps: usize,
     /// All paths, each as long as its variable needs.
     pub paths: Vec<Path>,
 }
@@ -54,7 +54,11 @@ impl<'a> Brute<'a> {
     /// The truth of the rest of the objective once the first path variables are chosen.
     pub fn holds<'b>(&'b self, chosen: &mut Vec<&'b Path>) -> bool {
         let Some(&exists) = self.problem.exists.get(chosen.len()) else {
-            return self.eval(&self.problem.formula, chosen, 0);
+            let formula = &self.problem.formula;
+            return match self.problem.semantics {
+                Some(semantics) => self.holds_under(semantics, formula, chosen),
+                None => self.eval(formula, chosen, 0),
+            };
         };
         for path in &self.paths {
             chosen.push(path);
@@ -149,7 +153,7 @@ impl<'a> Brute<'a> {
         }
     }
 
-    fn atom(&self, atom: &Atom, paths: &[&Path], t: usize) -> bool {
+    pub(crate) fn atom(&self, atom: &Atom, paths: &[&Path], t: usize) -> bool {
         let system = &self.problem.system;
         let state = |p: &usize| paths[*p].states[t];
         let value = |p: &usize, v: &usize| system.values(state(p))[*v];
@@ -169,6 +173,11 @@ impl<'a> Brute<'a> {
                     system.labels[0].contains(&state(p)) == system.labels[0].contains(&state(q))
                 }
             },
+            Atom::Choice(p, a, yes, no) => {
+                let label = if taken(p) == Some(*a) { yes } else { no };
+                system.labels[*label].contains(&state(p))
+            }
+            Atom::Coded(p, v, a) => value(p, v) == usize::from(taken(p) == Some(*a)),
             Atom::Enabled(p, a) => self.edges.iter().any(|e| e.0 == state(p) && e.1 == *a),
         }
     }

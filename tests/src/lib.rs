@@ -6,6 +6,7 @@
 
 use std::io::Write;
 
+mod beyond;
 pub mod brute;
 pub mod model;
 pub mod random;

@@ -95,6 +95,55 @@ pub enum Atom {
     SameObs(usize, usize),
     /// `a in enabled[p]`
     Enabled(usize, usize),
+    /// `if action[p] == a then l0[p] else l1[p]`
+    Choice(usize, usize, usize, usize),
+    /// `x[p] == (if action[p] == a then 1 else 0)`, of a range.
+    Coded(usize, usize, usize),
+}
+
+impl Atom {
+    /// Whether it has no connective and reads the actions taken.
+    #[must_use]
+    pub fn reads_actions(&self) -> bool {
+        matches!(self, Atom::Took(..) | Atom::SameAction(..) | Atom::Coded(..))
+    }
+
+    /// What it stands for, where it has connectives and reads the actions taken.
+    #[must_use]
+    pub fn parts(&self) -> Option<Formula> {
+        let Atom::Choice(p, a, yes, no) = *self else { return None };
+        let took = || Formula::Atom(Atom::Took(p, a));
+        let label = |l| Formula::Atom(Atom::Label(p, l));
+        let then = Formula::And(vec![took(), label(yes)]);
+        let otherwise = Formula::And(vec![Formula::Not(Box::new(took())), label(no)]);
+        Some(Formula::Or(vec![then, otherwise]))
+    }
+}
+
+/// How a path stands for infinite ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Semantics {
+    Pes,
+    Opt,
+    Hpes,
+    Hopt,
+}
+
+impl Semantics {
+    /// In an order in which what holds under one holds under the next.
+    pub const ALL: [Semantics; 4] = [Semantics::Pes, Semantics::Hpes, Semantics::Hopt, Semantics::Opt];
+}
+
+impl Display for Semantics {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Semantics::Pes => "pes",
+            Semantics::Opt => "opt",
+            Semantics::Hpes => "hpes",
+            Semantics::Hopt => "hopt",
+        })
+    }
 }
 
 /// `[lo,hi]`; `None` only where the objective says `within`.
@@ -119,6 +168,27 @@ pub enum Formula {
     WeakUntil(Interval, Box<Formula>, Box<Formula>),
 }
 
+impl Formula {
+    /// Whether some atom reads the actions taken.
+    #[must_use]
+    pub fn reads_actions(&self) -> bool {
+        match self {
+            Formula::Atom(atom) => atom.reads_actions() || atom.parts().is_some(),
+            Formula::And(fs) | Formula::Or(fs) => fs.iter().any(Formula::reads_actions),
+            Formula::Not(a)
+            | Formula::Next(a)
+            | Formula::WeakNext(a)
+            | Formula::Finally(_, a)
+            | Formula::Globally(_, a) => a.reads_actions(),
+            Formula::Implies(a, b)
+            | Formula::Iff(a, b)
+            | Formula::Until(_, a, b)
+            | Formula::Release(_, a, b)
+            | Formula::WeakUntil(_, a, b) => a.reads_actions() || b.reads_actions(),
+        }
+    }
+}
+
 /// A system and an objective.
 #[derive(Clone, Debug)]
 pub struct Problem {
@@ -128,6 +198,8 @@ pub struct Problem {
     pub exists: Vec<bool>,
     /// `within K`.
     pub within: Option<u32>,
+    /// `semantics S`, only with `within`.
+    pub semantics: Option<Semantics>,
     /// How many steps the formula looks ahead at most, without `within`.
     pub look: u32,
     /// The formula.
@@ -253,6 +325,9 @@ impl Display for Problem {
         if let Some(k) = self.within {
             write!(f, " within {k}")?;
         }
+        if let Some(semantics) = self.semantics {
+            write!(f, " semantics {semantics}")?;
+        }
         write!(f, " {{\n  ")?;
         for (exists, name) in self.exists.iter().zip(PATHS) {
             write!(f, "{} {name}. ", if *exists { "exists" } else { "forall" })?;
@@ -322,6 +397,14 @@ impl Atom {
             Atom::SameState(i, j) => format!("state[{}] == state[{}]", p(i), p(j)),
             Atom::SameObs(i, j) => format!("obs[{}] == obs[{}]", p(i), p(j)),
             Atom::Enabled(i, a) => format!("{} in enabled[{}]", system.actions[*a], p(i)),
+            Atom::Choice(i, a, yes, no) => {
+                let (p, action) = (p(i), system.actions[*a]);
+                format!("if action[{p}] == {action} then l{yes}[{p}] else l{no}[{p}]")
+            }
+            Atom::Coded(i, v, a) => {
+                let (p, name, action) = (p(i), system.vars[*v].0, system.actions[*a]);
+                format!("{name}[{p}] == (if action[{p}] == {action} then 1 else 0)")
+            }
         }
     }
 }

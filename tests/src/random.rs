@@ -1,7 +1,7 @@
 //! Random problems.
 
 use crate::brute::Brute;
-use crate::model::{Atom, Formula, Interval, Kind, Observe, Problem, Rule, System};
+use crate::model::{Atom, Formula, Interval, Kind, Observe, Problem, Rule, Semantics, System};
 
 /// A reproducible source of numbers (SplitMix64).
 #[derive(Clone, Debug)]
@@ -80,7 +80,63 @@ fn attempt(random: &mut Random) -> Problem {
     } else {
         formula
     };
-    Problem { system, exists, within, look: horizon, formula }
+    let semantics = within.filter(|_| random.once_in(2)).map(|_| Semantics::ALL[random.below(4)]);
+    Problem { system, exists, within, semantics, look: horizon, formula }
+}
+
+/// A problem under one of the semantics, often with paths that halt.
+#[must_use]
+pub fn problem_with_semantics(random: &mut Random, semantics: Semantics) -> Problem {
+    loop {
+        let mut candidate = problem(random);
+        if candidate.within.is_none() {
+            continue;
+        }
+        candidate.semantics = Some(semantics);
+        if random.once_in(2) {
+            candidate.system.absorb = random.subset(candidate.system.states(), 2);
+        }
+        if Brute::new(&candidate, MOST_TUPLES).is_some_and(|b| {
+            let paths = u32::try_from(candidate.exists.len()).unwrap_or(u32::MAX);
+            (1..=MOST_TUPLES).contains(&b.paths.len().saturating_pow(paths))
+        }) {
+            return candidate;
+        }
+    }
+}
+
+/// A problem on a system whose paths all halt within the horizon and never end, that reads no actions and has bounds
+/// for all operators: the infinite path of each prefix is then known.
+#[must_use]
+pub fn halting_problem(random: &mut Random) -> Problem {
+    let states = 2 + random.below(3);
+    let mut system = system(random);
+    system.vars = vec![("s", Kind::Range(states))];
+    system.labels = vec![random.subset(states, 2), random.subset(states, 3)];
+    system.init = None;
+    system.rules.clear();
+    system.absorb = vec![states - 1];
+    for from in 0..states - 1 {
+        if random.once_in(4) {
+            system.absorb.push(from);
+            continue;
+        }
+        let higher: Vec<usize> = (from + 1..states).filter(|_| !random.once_in(2)).collect();
+        let choices = vec![Some(if higher.is_empty() { vec![states - 1] } else { higher })];
+        let actions = (0..system.actions.len()).collect();
+        system.rules.push(Rule { from, actions, choices });
+    }
+    let paths = 1 + random.below(2);
+    let exists: Vec<bool> = (0..paths).map(|_| random.once_in(2)).collect();
+    let look = 1 + random.bound(6);
+    let formula = loop {
+        let depth = 2 + random.below(2);
+        let formula = Formulas { random, system: &system, paths, within: false }.formula(depth, look);
+        if !formula.reads_actions() {
+            break formula;
+        }
+    };
+    Problem { system, exists, within: None, semantics: None, look, formula }
 }
 
 /// The shape of robustness: a path does something, and another that takes the same actions does something too.
@@ -230,15 +286,17 @@ impl Formulas<'_> {
         let action = self.random.below(system.actions.len());
         let var = self.random.below(system.vars.len());
         let kind = system.vars[var].1;
-        match self.random.below(if self.paths == 1 { 6 } else { 13 }) {
+        match self.random.below(if self.paths == 1 { 7 } else { 14 }) {
             0 | 1 => Atom::Label(p, self.random.below(2)),
             2 => Atom::Is(p, var, self.random.below(kind.size())),
             3 | 4 => Atom::Took(p, action),
             5 => Atom::Enabled(p, action),
-            6 if matches!(kind, Kind::Range(_)) => Atom::Less(p, self.random.below(2), q, var),
-            6 | 7 => Atom::SameValue(p, q, var),
-            8 | 9 => Atom::SameAction(p, q),
-            10 | 11 => Atom::SameState(p, q),
+            6 if matches!(kind, Kind::Range(_)) && self.random.once_in(2) => Atom::Coded(p, var, action),
+            6 => Atom::Choice(p, action, self.random.below(2), self.random.below(2)),
+            7 if matches!(kind, Kind::Range(_)) => Atom::Less(p, self.random.below(2), q, var),
+            7 | 8 => Atom::SameValue(p, q, var),
+            9 | 10 => Atom::SameAction(p, q),
+            11 | 12 => Atom::SameState(p, q),
             _ => Atom::SameObs(p, q),
         }
     }
@@ -254,7 +312,12 @@ impl Own<'_> {
     fn formula(&mut self, look: u32) -> Formula {
         let mut atom = self.formulas.atom();
         match &mut atom {
-            Atom::Label(p, _) | Atom::Is(p, ..) | Atom::Took(p, _) | Atom::Enabled(p, _) => *p = self.path,
+            Atom::Label(p, _)
+            | Atom::Is(p, ..)
+            | Atom::Took(p, _)
+            | Atom::Enabled(p, _)
+            | Atom::Choice(p, ..)
+            | Atom::Coded(p, ..) => *p = self.path,
             _ => {}
         }
         let atom = Box::new(Formula::Atom(atom));

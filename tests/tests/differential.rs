@@ -15,6 +15,9 @@ use hyperplan_verify::{Budget, check, decide};
 use std::str::FromStr;
 use std::time::Duration;
 
+#[path = "differential/semantics.rs"]
+mod semantics;
+
 fn number(variable: &str, default: u64) -> u64 {
     match std::env::var(variable) {
         Ok(text) => text.parse().unwrap_or_else(|_| panic!("{variable} must be a number, not {text:?}")),
