@@ -297,7 +297,12 @@ impl Explorer<'_> {
 }
 
 /// The rows that a clause's updates allow, in or out of range.
-fn outcomes(system: &System, clause: &Clause, row: &[i64], budget: usize) -> Result<Vec<Vec<i64>>, TooLarge> {
+pub(crate) fn outcomes(
+    system: &System,
+    clause: &Clause,
+    row: &[i64],
+    budget: usize,
+) -> Result<Vec<Vec<i64>>, TooLarge> {
     let mut all = vec![row.to_vec()];
     for (var, update) in &clause.updates {
         let values = update_values(system, *var, update, row);

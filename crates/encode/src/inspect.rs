@@ -1,8 +1,9 @@
 //! What `check` wants to know of a system's reachable states.
 
+use crate::Stop;
 use crate::eval::{bounds, eval_in};
-use crate::graph::{Graph, StateIx, update_values_unclipped};
-use hyperplan_problem::{Expr, LabelId, Leaf, System};
+use crate::graph::{Graph, StateIx, outcomes, update_values_unclipped};
+use hyperplan_problem::{Expr, LabelId, Leaf, System, Var};
 
 /// Things that are probably not meant, each with a reachable state as an example.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -11,18 +12,27 @@ pub struct Findings {
     pub dead_ends: Option<(usize, StateIx)>,
     /// Labels that hold in no reachable state.
     pub unreachable: Vec<LabelId>,
-    /// Pairs of written clauses of one action that are enabled together, by position.
+    /// Pairs of written clauses of one action that are enabled together and lead to different states, by position.
     pub overlaps: Vec<(usize, usize, StateIx)>,
     /// Written clauses an update of which leaves its variable's range where the clause is enabled.
     pub lost: Vec<(usize, StateIx)>,
 }
 
-/// Looks at every reachable state.
+/// States looked at between two questions whether to stop.
+const STRIDE: StateIx = 256;
+
+/// Values of all choices of a clause beyond which its outcomes are not compared with another's.
+const OUTCOMES: usize = 1024;
+
+/// Looks at every reachable state. `None` if the caller wanted to stop before the last.
 #[must_use]
-pub fn inspect(system: &System, graph: &Graph) -> Findings {
+pub fn inspect(system: &System, graph: &Graph, stop: Stop<'_>) -> Option<Findings> {
     let mut findings = Findings::default();
     let mut seen = vec![false; system.labels.len()];
     for state in 0..graph.len() as StateIx {
+        if state % STRIDE == 0 && stop() {
+            return None;
+        }
         let row = graph.row(state);
         if graph.successors(state).is_empty() {
             let (count, _) = findings.dead_ends.get_or_insert((0, state));
@@ -36,7 +46,7 @@ pub fn inspect(system: &System, graph: &Graph) -> Findings {
         }
     }
     findings.unreachable = (0..seen.len()).filter(|&at| !seen[at]).map(LabelId::from).collect();
-    findings
+    Some(findings)
 }
 
 fn clauses(system: &System, state: StateIx, row: &[i64], findings: &mut Findings) {
@@ -47,13 +57,36 @@ fn clauses(system: &System, state: StateIx, row: &[i64], findings: &mut Findings
         for &second in &enabled[at + 1..] {
             let actions = &system.clauses[second].actions;
             let shared = system.clauses[first].actions.iter().any(|a| actions.contains(a));
-            if shared && !findings.overlaps.iter().any(|o| (o.0, o.1) == (first, second)) {
+            let known = || findings.overlaps.iter().any(|o| (o.0, o.1) == (first, second));
+            if shared && !known() && differ(system, first, second, row) {
                 findings.overlaps.push((first, second, state));
             }
         }
         if !findings.lost.iter().any(|l| l.0 == first) && leaves_range(system, first, row) {
             findings.lost.push((first, state));
         }
+    }
+}
+
+/// Whether both clauses have outcomes, and not the same.
+fn differ(system: &System, first: usize, second: usize, row: &[i64]) -> bool {
+    let outcomes = |clause: usize| -> Option<Vec<Vec<i64>>> {
+        let mut all = outcomes(system, &system.clauses[clause], row, OUTCOMES).ok()?;
+        let inside = |next: &Vec<i64>| {
+            let fits = |(value, var): (&i64, &Var)| {
+                let (lo, hi) = bounds(&var.ty);
+                (lo..=hi).contains(value)
+            };
+            next.iter().zip(&system.vars).all(fits)
+        };
+        all.retain(inside);
+        all.sort_unstable();
+        all.dedup();
+        Some(all)
+    };
+    match (outcomes(first), outcomes(second)) {
+        (Some(a), Some(b)) => !a.is_empty() && !b.is_empty() && a != b,
+        _ => true,
     }
 }
 

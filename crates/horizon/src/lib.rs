@@ -51,6 +51,12 @@ pub fn horizons(objective: &Objective) -> TiVec<PathId, Horizon> {
         .collect()
 }
 
+/// The latest time at which a subformula is read, in bounded mode; `None` where it never is.
+#[must_use]
+pub fn latest_read(objective: &Objective, id: FormulaId) -> Option<u64> {
+    latest_reads(objective, Charge::Tight).time[id]
+}
+
 /// How much of a bound each operand of an until is charged.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Charge {

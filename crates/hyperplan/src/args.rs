@@ -199,6 +199,9 @@ pub(crate) struct Check {
     pub(crate) problem: Problem,
     #[command(flatten)]
     pub(crate) output: Output,
+    /// Exit status 2 if there is a warning
+    #[arg(short = 'D', long)]
+    pub(crate) deny_warnings: bool,
     /// Seconds for the whole command
     #[arg(long, value_name = "SECONDS")]
     pub(crate) timeout: Option<f64>,

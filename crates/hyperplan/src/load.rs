@@ -5,8 +5,8 @@ use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::report;
 use hyperplan_problem::answer::{StrategyFile, to_strategy};
-use hyperplan_problem::{Loader, Objective, Overrides, Problem, Strategy, read};
-use hyperplan_syntax::{Diagnostic, SourceMap, Span};
+use hyperplan_problem::{Loader, Lowered, Objective, Overrides, Problem, Strategy, read};
+use hyperplan_syntax::{SourceMap, Span};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -29,20 +29,22 @@ impl Loaded {
     pub(crate) fn read(args: &args::Problem, out: &Output) -> Outcome<Loaded> {
         let start = Instant::now();
         let text = read_source(&args.file)?;
-        let (problem, sources, diagnostics) = Self::parse(args, &text);
-        report::diagnostics(&sources, &diagnostics, out);
-        let problem = problem.ok_or_else(Failure::said)?;
-        Ok(Loaded { file: args.file.display().to_string(), problem, sources, time: start.elapsed() })
+        let (lowered, sources) = Self::lower(args, &text);
+        report::diagnostics(&sources, &lowered.diagnostics, out);
+        if lowered.has_errors() {
+            return Err(Failure::said());
+        }
+        let (file, problem) = (args.file.display().to_string(), lowered.problem);
+        Ok(Loaded { file, problem, sources, time: start.elapsed() })
     }
 
-    /// The problem that a text means, where it has no errors, and what is wrong with it.
-    pub(crate) fn parse(args: &args::Problem, text: &str) -> (Option<Problem>, SourceMap, Vec<Diagnostic>) {
+    /// What a text means, and what is wrong with it.
+    pub(crate) fn lower(args: &args::Problem, text: &str) -> (Lowered, SourceMap) {
         let folder = Beside(args.file.parent().unwrap_or(Path::new("")).to_owned());
         let overrides = Overrides { values: args.set.clone() };
         let mut sources = SourceMap::new();
         let lowered = read(&mut sources, &args.file.display().to_string(), text, &folder, &overrides);
-        let problem = (!lowered.has_errors()).then_some(lowered.problem);
-        (problem, sources, lowered.diagnostics)
+        (lowered, sources)
     }
 
     /// The objectives that are meant: the one of that name, all for `all`, and without a name the only one.

@@ -46,6 +46,61 @@ fn check_as_json() {
 }
 
 #[test]
+fn check_denies_warnings_where_asked() {
+    for (file, status) in [("pass/check-unused.hp", 2), ("case-studies/iso-10.hp", 0)] {
+        assert_eq!(hyperplan(&["check", file]).status, 0, "{file}");
+        assert_eq!(hyperplan(&["check", "--deny-warnings", file]).status, status, "{file}");
+        assert_eq!(hyperplan(&["check", "-D", "--quiet", file]).status, status, "{file}");
+    }
+}
+
+#[test]
+fn check_says_what_it_had_no_time_for() {
+    let run = hyperplan(&["check", "case-studies/iso-20.hp", "--timeout", "0.000001", "--format", "json"]);
+    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
+    let report = &run.json()[0];
+    assert_eq!((&report["warnings"], &report["notes"].as_array().map(Vec::len)), (&0.into(), &Some(1)));
+    assert_eq!(report["undecided"][0]["code"], "undecided");
+    // What was not decided is no reason to refuse.
+    let run = hyperplan(&["check", "case-studies/iso-20.hp", "--timeout", "0.000001", "-D", "-v"]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    assert!(run.stderr.contains("no time was left"), "{}", run.stderr);
+    assert!(run.stdout.contains("undecided)"), "{}", run.stdout);
+}
+
+#[test]
+fn check_as_json_has_the_warnings() {
+    let run = hyperplan(&["check", "pass/check-demand.hp", "--format", "json"]);
+    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
+    let report = &run.json()[0];
+    assert_eq!((&report["errors"], &report["warnings"]), (&0.into(), &1.into()));
+    let warning = &report["diagnostics"][0];
+    assert_eq!((&warning["severity"], &warning["line"]), (&"warning".into(), &7.into()));
+    assert_eq!(warning["code"], "demanded-of-every-path");
+}
+
+/// Every code that a warning of the fixtures has is on the page about them.
+#[test]
+fn every_warning_is_documented() {
+    let page = std::fs::read_to_string(common::specs().join("../docs/checks.md")).expect("the page is there");
+    let mut codes = Vec::new();
+    for entry in std::fs::read_dir(common::specs().join("pass")).expect("the specs are there") {
+        let path = entry.expect("readable").path();
+        if path.extension().is_some_and(|e| e == "stderr") {
+            let text = std::fs::read_to_string(path).expect("readable");
+            let marked = |line: &str| Some(line.strip_prefix("warning[")?.strip_suffix(']')?.to_owned());
+            codes.extend(text.lines().filter_map(marked));
+        }
+    }
+    codes.sort_unstable();
+    codes.dedup();
+    assert!(codes.len() >= 15, "{codes:?}");
+    for code in codes {
+        assert!(page.contains(&format!("| `{code}` |")), "{code}");
+    }
+}
+
+#[test]
 fn emit_writes_smtlib() {
     let run = hyperplan(&["emit", "rooms.hp", "--objective", "cso"]);
     assert_eq!(run.status, 0, "{}", run.stderr);

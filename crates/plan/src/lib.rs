@@ -16,5 +16,5 @@ mod solve;
 
 pub use config::{Config, EmitConfig, Error, Outcome, Quantifiers, Seconds, States, Verdict, Verified};
 pub use emit::{Emitted, emit};
-pub use lint::{lint, lint_systems};
+pub use lint::{Budget, Lints, lint, lint_systems};
 pub use solve::solve;

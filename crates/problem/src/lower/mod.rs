@@ -27,6 +27,7 @@ mod template;
 mod tests;
 mod typed;
 mod types;
+mod unused;
 mod walk;
 
 pub(crate) use base::{Actions, Base};
@@ -82,6 +83,8 @@ pub struct Lowered {
     pub diagnostics: Vec<Diagnostic>,
     /// Constants in the order of the file, with their values (replaced ones with what replaced them).
     pub consts: Vec<(String, Value)>,
+    /// Warnings of what is declared and never used: for a command that looks for what is doubtful.
+    pub unused: Vec<Diagnostic>,
 }
 
 impl Lowered {
@@ -146,6 +149,7 @@ pub fn lower(
         problem: Problem { actions: actions.names, systems, objectives },
         diagnostics: diagnostics.into_list(),
         consts: consts.values(),
+        unused: unused::unused(file),
     }
 }
 

@@ -1,0 +1,70 @@
+//! A system in which every action is possible everywhere: what the original cannot do leads to being *stuck*.
+
+use hyperplan_problem::{ActionId, Clause, Comparison, Expr, Leaf, System, Type, Update, Value, Var, VarId};
+
+/// The value of the new variable before anything impossible was tried.
+const FREE: i64 = 0;
+/// Its value right after.
+pub(super) const JUST_STUCK: i64 = 1;
+/// Its value from then on.
+const STUCK: i64 = 2;
+
+/// The system with a variable that says whether its path got stuck; the other variables then keep their values.
+pub(super) fn total(system: &System) -> (System, VarId) {
+    let mut total = system.clone();
+    let span = system.span;
+    let ty = Type::Range { lo: FREE, hi: STUCK };
+    let var = total.vars.push_and_get_key(Var { name: "stuck".into(), ty, span });
+    let free = is(var, FREE);
+    let also_free = |e: &Expr<Leaf>| Expr::And(vec![free.clone(), e.clone()]);
+    total.init = also_free(&system.init);
+    total.absorb = also_free(&system.absorb);
+    for clause in &mut total.clauses {
+        clause.guard = also_free(&clause.guard);
+    }
+    let set = |value| vec![(var, Update::Assign(Expr::Const(Value::Int(value))))];
+    for &action in &system.actions {
+        let cannot = Expr::Not(Box::new(enabled(system, action)));
+        let (guard, updates) = (also_free(&cannot), set(JUST_STUCK));
+        total.clauses.push(Clause { actions: vec![action], guard, updates, span, generated: true });
+    }
+    let (guard, updates) = (Expr::Not(Box::new(free)), set(STUCK));
+    let actions = system.actions.clone();
+    total.clauses.push(Clause { actions, guard, updates, span, generated: true });
+    (total, var)
+}
+
+/// That the new variable has this value.
+pub(super) fn is(var: VarId, value: i64) -> Expr<Leaf> {
+    let value = Expr::Const(Value::Int(value));
+    Expr::Compare(Comparison::Eq, Box::new(Expr::Leaf(Leaf::Var(var))), Box::new(value))
+}
+
+/// Where a system has a transition with that action.
+pub(super) fn enabled(system: &System, action: ActionId) -> Expr<Leaf> {
+    let clauses = system.clauses.iter().filter(|c| c.actions.contains(&action));
+    let mut ways: Vec<Expr<Leaf>> = clauses.map(|clause| possible(system, clause)).collect();
+    ways.push(system.absorb.clone());
+    Expr::Or(ways)
+}
+
+/// Where a clause has an outcome: its guard holds, and each update has a value in range.
+fn possible(system: &System, clause: &Clause) -> Expr<Leaf> {
+    let mut parts = vec![clause.guard.clone()];
+    for (var, update) in &clause.updates {
+        // Values of other types are never outside.
+        let Type::Range { lo, hi } = system.vars[*var].ty else { continue };
+        parts.push(match update {
+            Update::Assign(e) => between(lo, e, hi),
+            Update::OneOf(es) => Expr::Or(es.iter().map(|e| between(lo, e, hi)).collect()),
+            Update::Within(least, greatest) => Expr::Const(Value::Bool(*least <= hi && *greatest >= lo)),
+        });
+    }
+    Expr::And(parts)
+}
+
+fn between(lo: i64, e: &Expr<Leaf>, hi: i64) -> Expr<Leaf> {
+    let at_most = |a: Expr<Leaf>, b: Expr<Leaf>| Expr::Compare(Comparison::Le, Box::new(a), Box::new(b));
+    let number = |value| Expr::Const(Value::Int(value));
+    Expr::And(vec![at_most(number(lo), e.clone()), at_most(e.clone(), number(hi))])
+}

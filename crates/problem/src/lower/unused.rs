@@ -1,0 +1,158 @@
+//! What a file declares and never uses.
+//!
+//! Uses are by name: a label of one system counts as used if any system, objective or template names it so, which
+//! misses some unused labels and blames no used one. Labels that a map's letters declare are not asked about.
+
+use super::walk::visit;
+use hyperplan_syntax::Diagnostic;
+use hyperplan_syntax::ast::{
+    Define, Expr, ExprKind, File, Ident, Item, Objective, ObjectiveBody, Set, System, SystemItem, Template,
+    Type, UpdateValue,
+};
+use rustc_hash::FxHashSet;
+
+/// A warning for each declaration that nothing uses, in the order of the file.
+pub(super) fn unused(file: &File) -> Vec<Diagnostic> {
+    let mut uses = Uses::default();
+    for item in &file.items {
+        uses.item(item);
+    }
+    if file.items.iter().all(|item| !matches!(item, Item::Objective(_))) {
+        // A file of systems alone is there to be looked at.
+        return Vec::new();
+    }
+    let quantified = systems_quantified(file);
+    let mut found = Vec::new();
+    for item in &file.items {
+        match item {
+            Item::Const(item) => found.extend(uses.unless_used("constant", &item.name)),
+            Item::Template(item) => found.extend(uses.unless_used("template", &item.name)),
+            Item::Define(item) => found.extend(uses.unless_used("definition", &item.name)),
+            Item::System(item) if !quantified.contains(item.name.name.as_str()) => {
+                found.push(warning("system", &item.name).with_help("no path of an objective is one of it"));
+            }
+            Item::System(item) => {
+                for item in &item.items {
+                    if let SystemItem::Label(name, _) = item {
+                        found.extend(uses.unless_used("label", name));
+                    }
+                }
+            }
+            Item::Objective(_) => {}
+        }
+    }
+    found
+}
+
+fn warning(what: &str, name: &Ident) -> Diagnostic {
+    Diagnostic::warning("unused", name.span, format!("{what} {} is never used", name.name))
+}
+
+/// The systems that paths belong to: the only one, or those that quantifiers name.
+fn systems_quantified(file: &File) -> FxHashSet<&str> {
+    let systems = file.items.iter().filter_map(|item| match item {
+        Item::System(system) => Some(system.name.name.as_str()),
+        _ => None,
+    });
+    let all: FxHashSet<&str> = systems.collect();
+    if all.len() < 2 {
+        return all;
+    }
+    let quantifiers = file.items.iter().flat_map(|item| match item {
+        Item::Template(Template { quantifiers, .. })
+        | Item::Objective(Objective { body: ObjectiveBody::Formula { quantifiers, .. }, .. }) => {
+            &quantifiers[..]
+        }
+        _ => &[],
+    });
+    quantifiers.filter_map(|q| q.system.as_ref()).map(|s| s.name.as_str()).collect()
+}
+
+/// Every name that stands in an expression.
+#[derive(Default)]
+struct Uses<'a> {
+    names: FxHashSet<&'a str>,
+}
+
+impl<'a> Uses<'a> {
+    fn unless_used(&self, what: &str, name: &Ident) -> Option<Diagnostic> {
+        (!self.names.contains(name.name.as_str())).then(|| warning(what, name))
+    }
+
+    fn item(&mut self, item: &'a Item) {
+        match item {
+            Item::Const(item) => self.expr(&item.value),
+            Item::System(item) => self.system(item),
+            Item::Template(item) => {
+                self.defines(&item.defines);
+                self.expr(&item.body);
+            }
+            Item::Define(item) => self.expr(&item.body),
+            Item::Objective(item) => self.objective(item),
+        }
+    }
+
+    fn objective(&mut self, objective: &'a Objective) {
+        objective.within.iter().for_each(|within| self.expr(within));
+        match &objective.body {
+            ObjectiveBody::Formula { defines, body, .. } => {
+                self.defines(defines);
+                self.expr(body);
+            }
+            ObjectiveBody::Instance { template, args } => {
+                self.names.insert(&template.name);
+                args.iter().for_each(|arg| self.expr(arg));
+            }
+        }
+    }
+
+    fn defines(&mut self, defines: &'a [Define]) {
+        defines.iter().for_each(|define| self.expr(&define.body));
+    }
+
+    fn system(&mut self, system: &'a System) {
+        for item in &system.items {
+            match item {
+                SystemItem::State(declared) => {
+                    for declared in declared {
+                        if let Type::Range(lo, hi) = &declared.ty {
+                            self.expr(lo);
+                            self.expr(hi);
+                        }
+                    }
+                }
+                SystemItem::On(clause) => {
+                    clause.guard.iter().for_each(|guard| self.expr(guard));
+                    for update in &clause.updates {
+                        match &update.value {
+                            UpdateValue::Assign(e) => self.expr(e),
+                            UpdateValue::Choose(set) => self.set(set),
+                        }
+                    }
+                }
+                SystemItem::Init(e) | SystemItem::Label(_, e) | SystemItem::Absorb(e) => self.expr(e),
+                SystemItem::Observe(es) => es.iter().for_each(|e| self.expr(e)),
+                _ => {}
+            }
+        }
+    }
+
+    fn set(&mut self, set: &'a Set) {
+        match set {
+            Set::List(es, _) => es.iter().for_each(|e| self.expr(e)),
+            Set::Range(lo, hi) => {
+                self.expr(lo);
+                self.expr(hi);
+            }
+            Set::Enabled(..) => {}
+        }
+    }
+
+    fn expr(&mut self, e: &'a Expr) {
+        visit(e, &mut |e| match &e.kind {
+            ExprKind::Name(name) => drop(self.names.insert(name)),
+            ExprKind::At(name, _) | ExprKind::Call(name, _) => drop(self.names.insert(&name.name)),
+            _ => {}
+        });
+    }
+}
