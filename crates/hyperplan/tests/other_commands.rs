@@ -28,9 +28,10 @@ fn horizon_tells_the_semantics() {
 
 #[test]
 fn check_counts() {
-    let run = hyperplan(&["check", "case-studies/iso-10.hp"]);
+    // A small one, so that no question runs out of time on a busy machine.
+    let run = hyperplan(&["check", "pass/template.hp"]);
     assert_eq!((run.status, run.stderr.as_str()), (0, ""));
-    assert_eq!(run.stdout, "case-studies/iso-10.hp: 1 system, 1 objective, no warnings\n");
+    assert_eq!(run.stdout, "pass/template.hp: 1 system, 1 objective, no warnings\n");
 }
 
 #[test]
