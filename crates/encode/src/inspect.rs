@@ -74,8 +74,7 @@ fn differ(system: &System, first: usize, second: usize, row: &[i64]) -> bool {
         let mut all = outcomes(system, &system.clauses[clause], row, OUTCOMES).ok()?;
         let inside = |next: &Vec<i64>| {
             let fits = |(value, var): (&i64, &Var)| {
-                let (lo, hi) = bounds(&var.ty);
-                (lo..=hi).contains(value)
+                bounds(&var.ty).is_none_or(|(lo, hi)| (lo..=hi).contains(value))
             };
             next.iter().zip(&system.vars).all(fits)
         };

@@ -61,6 +61,14 @@ pub enum Spec {
     Command(String),
 }
 
+impl Spec {
+    /// A solver for integers and reals that is found on this machine, the first that hyperplan knows.
+    #[must_use]
+    pub fn for_arithmetic() -> Option<Spec> {
+        external::for_arithmetic().map(|name| Spec::Profile(name.to_owned()))
+    }
+}
+
 impl FromStr for Spec {
     type Err = Error;
 

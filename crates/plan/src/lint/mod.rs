@@ -1,7 +1,7 @@
 //! Warnings about objectives and systems that hold, or fail, for no good reason. `docs/checks.md` lists them.
 //!
 //! What needs a search is a question with a time budget: whether some paths, all chosen freely, do something. The
-//! embedded solver answers it; what it cannot answer in time is said to be undecided, never guessed.
+//! embedded solver answers it, for systems with infinitely many states an external one if there is one; what it cannot answer in time is said to be undecided, never guessed.
 
 mod demand;
 mod horizon;
@@ -17,7 +17,7 @@ mod vacuity;
 
 pub use systems::lint_systems;
 
-use hyperplan_problem::{Mode, Objective, Problem};
+use hyperplan_problem::{Objective, Problem};
 use hyperplan_solver::Deadline;
 use hyperplan_syntax::{Diagnostic, Span};
 use question::Asker;
@@ -58,7 +58,7 @@ pub fn lint(problem: &Problem, objective: &Objective, deadline: &Deadline, budge
     let mut asker = Asker::new(problem, objective, deadline.within(budget.objective), budget.question);
     if let Some(nothing) = asker.without_paths() {
         warnings.push(nothing);
-    } else if matches!(objective.mode, Mode::Bounded | Mode::Within(_)) {
+    } else if objective.semantics.is_none() {
         // Elsewhere a formula and its negation can fail together, and the questions would say something else.
         let mut vacuous = Vec::new();
         let constant = vacuity::lint(&mut asker, &mut vacuous);

@@ -24,6 +24,8 @@ pub(super) struct Asker<'a> {
     deadline: Deadline,
     /// The time for one of them.
     each: Duration,
+    /// Who is asked.
+    solver: Spec,
     undecided: Vec<Diagnostic>,
 }
 
@@ -34,7 +36,10 @@ impl<'a> Asker<'a> {
         deadline: Deadline,
         each: Duration,
     ) -> Self {
-        Asker { problem, objective, deadline, each, undecided: Vec::new() }
+        let finite = objective.paths.iter().all(|path| problem.systems[path.system].is_finite());
+        let solver = if finite { None } else { Spec::for_arithmetic() };
+        let solver = solver.unwrap_or(Spec::Builtin);
+        Asker { problem, objective, deadline, each, solver, undecided: Vec::new() }
     }
 
     pub(super) fn into_undecided(self) -> Vec<Diagnostic> {
@@ -91,7 +96,7 @@ impl<'a> Asker<'a> {
 
     fn config(&self) -> Config {
         Config {
-            solver: Spec::Builtin,
+            solver: self.solver.clone(),
             quantifiers: Quantifiers::Auto,
             states: States::Auto,
             deadline: self.deadline.within(self.each),

@@ -52,19 +52,22 @@ pub(super) fn enabled(system: &System, action: ActionId) -> Expr<Leaf> {
 fn possible(system: &System, clause: &Clause) -> Expr<Leaf> {
     let mut parts = vec![clause.guard.clone()];
     for (var, update) in &clause.updates {
+        if let Update::Within(least, greatest) = update {
+            parts.push(at_most(least, greatest));
+        }
         // Values of other types are never outside.
         let Type::Range { lo, hi } = system.vars[*var].ty else { continue };
+        let (lo, hi) = (Expr::Const(Value::Int(lo)), Expr::Const(Value::Int(hi)));
+        let inside = |e: &Expr<Leaf>| Expr::And(vec![at_most(&lo, e), at_most(e, &hi)]);
         parts.push(match update {
-            Update::Assign(e) => between(lo, e, hi),
-            Update::OneOf(es) => Expr::Or(es.iter().map(|e| between(lo, e, hi)).collect()),
-            Update::Within(least, greatest) => Expr::Const(Value::Bool(*least <= hi && *greatest >= lo)),
+            Update::Assign(e) => inside(e),
+            Update::OneOf(es) => Expr::Or(es.iter().map(inside).collect()),
+            Update::Within(least, greatest) => Expr::And(vec![at_most(least, &hi), at_most(&lo, greatest)]),
         });
     }
     Expr::And(parts)
 }
 
-fn between(lo: i64, e: &Expr<Leaf>, hi: i64) -> Expr<Leaf> {
-    let at_most = |a: Expr<Leaf>, b: Expr<Leaf>| Expr::Compare(Comparison::Le, Box::new(a), Box::new(b));
-    let number = |value| Expr::Const(Value::Int(value));
-    Expr::And(vec![at_most(number(lo), e.clone()), at_most(e.clone(), number(hi))])
+fn at_most(a: &Expr<Leaf>, b: &Expr<Leaf>) -> Expr<Leaf> {
+    Expr::Compare(Comparison::Le, Box::new(a.clone()), Box::new(b.clone()))
 }

@@ -42,6 +42,12 @@ pub fn discover() -> Vec<Found> {
     builtin().into_iter().chain(external).collect()
 }
 
+/// The name of the first solver found that knows integers and reals.
+pub(crate) fn for_arithmetic() -> Option<&'static str> {
+    let able = |profile: &&Profile| ["integers", "reals"].iter().all(|a| profile.abilities.contains(a));
+    profiles().iter().filter(able).find(|profile| locate(profile).0.is_some()).map(|profile| profile.name)
+}
+
 #[cfg(any(feature = "cadical", feature = "batsat"))]
 fn builtin() -> Option<Found> {
     use crate::session::{Options, Session as _};

@@ -7,5 +7,6 @@ mod profile;
 mod reply;
 
 pub(crate) use dialogue::{open_command, open_profile};
+pub(crate) use discover::for_arithmetic;
 pub use discover::{Found, discover};
 pub(crate) use profile::{profile, that_take};
