@@ -4,8 +4,9 @@ use crate::Encoder;
 use crate::eval::{eval, eval_in};
 use crate::explicit::ExplicitPath;
 use crate::graph::{Graph, StateIx};
+use crate::moves::InState;
 use crate::path::{Path, Shape};
-use crate::symbolic::{InState, SymbolicPath};
+use crate::symbolic::SymbolicPath;
 use crate::unroll::AtomTerms;
 use crate::value::{Leaves, Val, constant, merge, same, translate};
 use hyperplan_problem::{

@@ -10,9 +10,9 @@ use crate::eval::{eval, eval_in};
 use crate::goal::Goal;
 use crate::graph::{Graph, StateIx};
 use crate::inputs::{Inputs, Move, Start};
+use crate::moves::Moves;
 use crate::reach::lasts;
 use crate::residual::{FALSE, MAX_ATOMS, Now, Residual, Residuals};
-use crate::symbolic::Moves;
 use crate::{Encoder, Error};
 use hyperplan_problem::{ActionId, Expr, FormulaId, Mode, Node, PathId, PathLeaf};
 

@@ -7,6 +7,7 @@ use crate::reach::Layers;
 use hyperplan_problem::{ActionId, PathId, Problem, System, Value};
 use hyperplan_smt::{Model, Script, Sort, Term, Terms};
 use rustc_hash::FxHashMap;
+use std::borrow::Cow;
 use std::rc::Rc;
 
 /// A path whose every state and letter is known.
@@ -100,6 +101,16 @@ pub(crate) struct Names<'a> {
     pub(crate) path: String,
 }
 
+/// A name as a part of a symbol's. Names from graph files may be anything, dots and slashes included: a number then
+/// keeps the symbols of different things different.
+fn plain(name: &str, number: u32) -> Cow<'_, str> {
+    if name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_') {
+        Cow::Borrowed(name)
+    } else {
+        Cow::Owned(format!("#{number}"))
+    }
+}
+
 impl Names<'_> {
     /// `p.at.3.4`: path p is where the first variable is 3 and the second 4.
     fn state(&self, graph: &Graph, state: StateIx) -> String {
@@ -107,7 +118,7 @@ impl Names<'_> {
         for (value, var) in graph.state(self.system, state).iter().zip(&self.system.vars) {
             match (value, &var.ty) {
                 (Value::Enum(at), hyperplan_problem::Type::Enum(values)) => {
-                    name.push_str(&format!(".{}", values[*at as usize]));
+                    name.push_str(&format!(".{}", plain(&values[*at as usize], *at)));
                 }
                 (Value::Bool(b), _) => name.push_str(&format!(".{b}")),
                 (Value::Int(i), _) => name.push_str(&format!(".{i}")),
@@ -128,7 +139,7 @@ impl Names<'_> {
     /// `p.up`, or `p.up/1` for the second outcome of `up`.
     fn letter(&self, graph: &Graph, letter: Letter) -> String {
         let (action, number) = graph.letters[letter as usize];
-        let action = &self.problem.actions[action];
+        let action = plain(&self.problem.actions[action], action.0);
         match number {
             0 => format!("{}.{action}", self.path),
             _ => format!("{}.{action}/{number}", self.path),

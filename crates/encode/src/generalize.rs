@@ -3,8 +3,9 @@
 use crate::Encoder;
 use crate::explicit::FixedPath;
 use crate::inputs::{Inputs, Move, Start};
+use crate::moves::Moves;
 use crate::path::{Instance, Known};
-use crate::symbolic::{FixedRows, Moves};
+use crate::symbolic::FixedRows;
 use hyperplan_problem::{PathId, State};
 use std::rc::Rc;
 

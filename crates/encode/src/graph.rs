@@ -55,11 +55,12 @@ impl Graph {
             width: system.vars.len(),
             rows: Vec::new(),
             index: FxHashMap::default(),
+            positions: (0u32..).zip(&system.actions).map(|(at, action)| (*action, at)).collect(),
         };
         let initial = explorer.initial_states()?;
         let (starts, edges) = explorer.edges()?;
         let Explorer { rows, width, .. } = explorer;
-        let (letters, transitions) = number_letters(system, &starts, edges);
+        let (letters, transitions) = number_letters(system, &starts, &edges);
         let rank = ranks(&starts, &transitions);
         Ok(Graph { width, rows, initial, letters, starts, transitions, rank })
     }
@@ -188,6 +189,8 @@ struct Explorer<'a> {
     width: usize,
     rows: Vec<i64>,
     index: FxHashMap<u128, StateIx>,
+    /// The position of each action in the system.
+    positions: FxHashMap<ActionId, u32>,
 }
 
 /// Transitions as found: action's position in the system, successor.
@@ -292,6 +295,20 @@ impl Explorer<'_> {
                 }
             }
         }
+        self.listed(row, found)
+    }
+
+    /// The transitions that the system lists one by one.
+    fn listed(&mut self, row: &[i64], found: &mut Edges) -> Result<(), TooLarge> {
+        let Some(edges) = &self.system.edges else { return Ok(()) };
+        let at = usize::from(edges.var);
+        let mut next = row.to_vec();
+        for edge in edges.of(u32::try_from(row[at]).unwrap_or(u32::MAX)) {
+            next[at] = i64::from(edge.to);
+            if let (Some(next), Some(&action)) = (self.intern(&next)?, self.positions.get(&edge.action)) {
+                found.push((action, next));
+            }
+        }
         Ok(())
     }
 }
@@ -372,16 +389,14 @@ type Letters = Vec<(ActionId, u32)>;
 type Transitions = Vec<(Letter, StateIx)>;
 
 /// Turns (action, successor) pairs into letters.
-fn number_letters(system: &System, starts: &[u32], edges: Edges) -> (Letters, Transitions) {
+fn number_letters(system: &System, starts: &[u32], edges: &Edges) -> (Letters, Transitions) {
     let mut most = vec![0u32; system.actions.len()];
-    let ranges = || starts.windows(2).map(|w| w[0] as usize..w[1] as usize);
-    let mut count = vec![0u32; system.actions.len()];
-    for range in ranges() {
-        count.fill(0);
-        for &(action, _) in &edges[range] {
-            count[action as usize] += 1;
-        }
-        most.iter_mut().zip(&count).for_each(|(m, &c)| *m = (*m).max(c));
+    // The edges of a state are sorted, so those of an action are neighbours; graphs may have as many actions as
+    // states, and no state is made to look at all of them.
+    let states = || starts.windows(2).map(|w| &edges[w[0] as usize..w[1] as usize]);
+    for same in states().flat_map(|edges| edges.chunk_by(|a, b| a.0 == b.0)) {
+        let most = &mut most[same[0].0 as usize];
+        *most = (*most).max(same.len() as u32);
     }
     let mut first = Vec::new();
     let mut letters = Vec::new();
@@ -390,13 +405,9 @@ fn number_letters(system: &System, starts: &[u32], edges: Edges) -> (Letters, Tr
         letters.extend((0..most[at]).map(|n| (action, n)));
     }
     let mut transitions = Vec::with_capacity(edges.len());
-    for range in ranges() {
-        count.fill(0);
-        for &(action, next) in &edges[range] {
-            let number = &mut count[action as usize];
-            transitions.push((first[action as usize] + *number, next));
-            *number += 1;
-        }
+    for same in states().flat_map(|edges| edges.chunk_by(|a, b| a.0 == b.0)) {
+        let numbered = (first[same[0].0 as usize]..).zip(same);
+        transitions.extend(numbered.map(|(letter, &(_, next))| (letter, next)));
     }
     (letters, transitions)
 }

@@ -14,6 +14,8 @@ pub struct Findings {
     pub unreachable: Vec<LabelId>,
     /// Pairs of written clauses of one action that are enabled together and lead to different states, by position.
     pub overlaps: Vec<(usize, usize, StateIx)>,
+    /// Written clauses enabled together with a move of the map, or a transition of the graph, of the same action.
+    pub added: Vec<(usize, StateIx)>,
     /// Written clauses an update of which leaves its variable's range where the clause is enabled.
     pub lost: Vec<(usize, StateIx)>,
 }
@@ -62,6 +64,9 @@ fn clauses(system: &System, state: StateIx, row: &[i64], findings: &mut Findings
                 findings.overlaps.push((first, second, state));
             }
         }
+        if !findings.added.iter().any(|a| a.0 == first) && adds(system, first, row) {
+            findings.added.push((first, state));
+        }
         if !findings.lost.iter().any(|l| l.0 == first) && leaves_range(system, first, row) {
             findings.lost.push((first, state));
         }
@@ -73,9 +78,8 @@ fn differ(system: &System, first: usize, second: usize, row: &[i64]) -> bool {
     let outcomes = |clause: usize| -> Option<Vec<Vec<i64>>> {
         let mut all = outcomes(system, &system.clauses[clause], row, OUTCOMES).ok()?;
         let inside = |next: &Vec<i64>| {
-            let fits = |(value, var): (&i64, &Var)| {
-                bounds(&var.ty).is_none_or(|(lo, hi)| (lo..=hi).contains(value))
-            };
+            let fits =
+                |(value, var): (&i64, &Var)| bounds(&var.ty).is_none_or(|(lo, hi)| (lo..=hi).contains(value));
             next.iter().zip(&system.vars).all(fits)
         };
         all.retain(inside);
@@ -87,6 +91,22 @@ fn differ(system: &System, first: usize, second: usize, row: &[i64]) -> bool {
         (Some(a), Some(b)) => !a.is_empty() && !b.is_empty() && a != b,
         _ => true,
     }
+}
+
+/// Whether a clause gives one of its actions another outcome than the map or graph does.
+fn adds(system: &System, clause: usize, row: &[i64]) -> bool {
+    let actions = &system.clauses[clause].actions;
+    let moves = || {
+        let moves = system.clauses.iter().enumerate().filter(|(_, c)| c.generated);
+        moves
+            .filter(|(_, c)| c.actions.iter().any(|a| actions.contains(a)))
+            .any(|(at, c)| eval_in(system, &c.guard, row) != 0 && !leaves_range(system, at, row))
+    };
+    let listed = system.edges.as_ref().is_some_and(|edges| {
+        let at = u32::try_from(row[usize::from(edges.var)]).unwrap_or(u32::MAX);
+        edges.of(at).iter().any(|edge| actions.contains(&edge.action))
+    });
+    listed || moves()
 }
 
 fn leaves_range(system: &System, clause: usize, row: &[i64]) -> bool {

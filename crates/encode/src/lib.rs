@@ -16,6 +16,7 @@ mod goal;
 mod graph;
 mod inputs;
 mod inspect;
+mod moves;
 mod path;
 mod query;
 mod reach;
@@ -40,8 +41,8 @@ pub use symbolic::FixedRows;
 
 use hyperplan_problem::{Mode, Node, Objective, PathId, PathLeaf, Problem, System, SystemId, Trace};
 use hyperplan_smt::Script;
+use moves::Moves;
 use std::rc::Rc;
-use symbolic::Moves;
 use typed_index_collections::TiVec;
 
 /// A state as a row of integers, one a variable: Booleans as 0 and 1, enumeration values by position.

@@ -166,7 +166,11 @@ fn solved(path: &Path, expected: &Expected) -> Result<(), Failed> {
     let output = hyperplan(&[&arguments[..], &[path.as_os_str()]].concat())?;
     let found = String::from_utf8(output.stdout)?;
     let messages = String::from_utf8_lossy(&output.stderr).into_owned();
-    if solver != "builtin" && !is_required() && output.status.code() == Some(4) && messages.contains("not found") {
+    if solver != "builtin"
+        && !is_required()
+        && output.status.code() == Some(4)
+        && messages.contains("not found")
+    {
         eprintln!("{solver} is missing: skipped");
         return Ok(());
     }

@@ -471,6 +471,8 @@ fn read_value(ty: &Type, value: &Scalar) -> Option<Value> {
             let index = names.iter().position(|n| n == name)?;
             u32::try_from(index).ok().map(Value::Enum)
         }
+        // Graph files may call a state by an integer.
+        (Type::Enum(_), Scalar::Int(n)) => read_value(ty, &Scalar::Name(n.to_string())),
         _ => None,
     }
 }
@@ -486,6 +488,8 @@ fn type_in_words(ty: &Type) -> String {
     match ty {
         Type::Bool => "true or false".to_owned(),
         Type::Range { lo, hi } => format!("an integer in {lo}..{hi}"),
+        // The states of a graph may be many.
+        Type::Enum(names) if names.len() > 12 => format!("one of {}, ...", names[..12].join(", ")),
         Type::Enum(names) => format!("one of {}", names.join(", ")),
         Type::Int => "an integer".to_owned(),
         Type::Real => "a number or a fraction in quotes, such as \"1/4\"".to_owned(),
@@ -524,6 +528,7 @@ mod tests {
             ],
             actions: vec![ActionId(0), ActionId(1)],
             clauses: Vec::new(),
+            edges: None,
             init: Expr::TRUE,
             labels: ti_vec![],
             absorb: Expr::FALSE,

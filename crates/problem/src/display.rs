@@ -5,6 +5,8 @@ use crate::ids::{FormulaId, PathId};
 use crate::objective::{Interval, Node, Objective, Quantifier, TemporalOp};
 use crate::problem::Problem;
 use crate::system::System;
+use hyperplan_syntax::is_name;
+use std::borrow::Cow;
 
 /// Longer texts are cut, with `...` at the end: shared parts could make them exponential.
 const MAX_LENGTH: usize = 4_000;
@@ -63,11 +65,20 @@ pub fn value(ty: &Type, value: Value) -> String {
         (Value::Bool(b), _) => b.to_string(),
         (Value::Int(n), _) => n.to_string(),
         (Value::Enum(index), Type::Enum(values)) => {
-            values.get(index as usize).cloned().unwrap_or_else(|| format!("#{index}"))
+            values.get(index as usize).map_or_else(|| format!("#{index}"), |v| name(v).into_owned())
         }
         (Value::Enum(index), _) => format!("#{index}"),
         (Value::Real(r), _) => r.to_string(),
     }
+}
+
+/// The name of an enumeration value or action as the language writes it: in quotes where it could be no name else.
+#[must_use]
+pub fn name(name: &str) -> Cow<'_, str> {
+    if is_name(name) {
+        return Cow::Borrowed(name);
+    }
+    Cow::Owned(format!("\"{}\"", name.replace('\\', "\\\\").replace('"', "\\\"")))
 }
 
 /// A state: `(x = 1, y = 2)`; a crash is shown only where it happened.
@@ -128,10 +139,14 @@ impl Names<PathLeaf> for PathNames<'_> {
     fn leaf(&self, leaf: &PathLeaf) -> String {
         match leaf {
             PathLeaf::State(p, leaf) => format!("{}[{}]", self.system(*p).leaf(leaf), self.path(*p)),
-            PathLeaf::Took(p, a) => format!("action[{}] == {}", self.path(*p), self.problem.actions[*a]),
+            PathLeaf::Took(p, a) => {
+                format!("action[{}] == {}", self.path(*p), name(&self.problem.actions[*a]))
+            }
             PathLeaf::SameAction(p, q) => format!("action[{}] == action[{}]", self.path(*p), self.path(*q)),
             PathLeaf::SameState(p, q) => format!("state[{}] == state[{}]", self.path(*p), self.path(*q)),
-            PathLeaf::Enabled(p, a) => format!("{} in enabled[{}]", self.problem.actions[*a], self.path(*p)),
+            PathLeaf::Enabled(p, a) => {
+                format!("{} in enabled[{}]", name(&self.problem.actions[*a]), self.path(*p))
+            }
             PathLeaf::Halted(p) => format!("halted[{}]", self.path(*p)),
         }
     }
@@ -276,7 +291,10 @@ impl<N> Printer<'_, N> {
                 p.out += " else ";
                 p.expr(b, 0, ty);
             }
-            Expr::Member(es, set) => p.member(es, &set.tuples),
+            Expr::Member(es, set) => {
+                let types: Vec<Option<&Type>> = es.iter().map(|e| enumeration(names, e)).collect();
+                p.member(es, &types, &set.tuples);
+            }
         });
     }
 
@@ -337,7 +355,7 @@ impl<N> Printer<'_, N> {
         }
     }
 
-    fn member<L>(&mut self, es: &[Expr<L>], tuples: &[Box<[i64]>])
+    fn member<L>(&mut self, es: &[Expr<L>], types: &[Option<&Type>], tuples: &[Box<[i64]>])
     where
         N: Names<L>,
     {
@@ -351,10 +369,14 @@ impl<N> Printer<'_, N> {
         self.out += " in {";
         let shown = &tuples[..tuples.len().min(MAX_MEMBERS)];
         self.list(shown, ", ", "", |p, tuple| {
-            let numbers: Vec<String> = tuple.iter().map(i64::to_string).collect();
-            p.out += &match numbers.as_slice() {
+            let member = |(n, ty): (&i64, &Option<&Type>)| match ty {
+                Some(ty) => value(ty, Value::Enum(u32::try_from(*n).unwrap_or(u32::MAX))),
+                None => n.to_string(),
+            };
+            let members: Vec<String> = tuple.iter().zip(types).map(member).collect();
+            p.out += &match members.as_slice() {
                 [only] => only.clone(),
-                numbers => format!("({})", numbers.join(", ")),
+                members => format!("({})", members.join(", ")),
             };
         });
         self.out += if shown.len() < tuples.len() { ", ...}" } else { "}" };

@@ -152,7 +152,8 @@ impl Comparison {
     }
 }
 
-/// The tuples of a set such as `{(0, 0), (3, 4)}`; a map's obstacles and cells are such sets.
+/// The tuples of a set such as `{(0, 0), (3, 4)}`; a map's obstacles and cells are such sets. An enumeration value
+/// stands in it by its position.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TupleSet {
     /// All tuples, sorted, without repetition, of equal length.
@@ -211,7 +212,7 @@ pub enum Expr<L> {
     Mod(Box<Expr<L>>, i64),
     /// Choice between two expressions of one type; the first is Boolean.
     If(Box<Expr<L>>, Box<Expr<L>>, Box<Expr<L>>),
-    /// Membership of a tuple of integers.
+    /// Membership of a tuple of integers and enumeration values.
     Member(Vec<Expr<L>>, Arc<TupleSet>),
 }
 
@@ -305,7 +306,12 @@ impl<L> Expr<L> {
             Expr::Mod(a, c) => a.integer(leaf)?.checked_rem_euclid(*c).map(Value::Int),
             Expr::If(c, a, b) => if c.truth(leaf)? { a } else { b }.evaluate(leaf),
             Expr::Member(es, set) => {
-                let tuple: Vec<i64> = es.iter().map(|e| e.integer(leaf)).collect::<Option<_>>()?;
+                let mut position = |e: &Expr<L>| match e.evaluate(leaf)? {
+                    Value::Int(n) => Some(n),
+                    Value::Enum(position) => Some(i64::from(position)),
+                    Value::Bool(_) | Value::Real(_) => None,
+                };
+                let tuple: Vec<i64> = es.iter().map(&mut position).collect::<Option<_>>()?;
                 Some(Value::Bool(set.contains(&tuple)))
             }
         }

@@ -2,6 +2,7 @@
 
 pub mod answer;
 pub mod display;
+mod edges;
 mod expr;
 mod grid;
 mod ids;
@@ -13,6 +14,7 @@ mod problem;
 mod strategy;
 mod system;
 
+pub use edges::{Edge, Edges};
 pub use expr::{Comparison, Expr, Leaf, PathLeaf, Rational, State, TupleSet, Type, Value};
 pub use ids::{ActionId, FormulaId, LabelId, PathId, SystemId, VarId};
 pub use lower::{Loader, Lowered, NoFiles, Overrides, lower, read};

@@ -1,5 +1,6 @@
 //! Discrete transition systems (the paper's Definition 1, with initial states and nondeterminism).
 
+use crate::edges::Edges;
 use crate::expr::{Expr, Leaf, Type};
 use crate::ids::{ActionId, LabelId, VarId};
 use hyperplan_syntax::Span;
@@ -11,7 +12,8 @@ use typed_index_collections::TiVec;
 /// system leads back to that state and nowhere else. In any other state `s`, a clause that lists action `a` and
 /// whose guard holds in `s` gives transitions `s -a-> s'`: one for each combination of the values that its updates
 /// allow, all expressions read in `s`, variables without an update unchanged; a combination in which some value is
-/// outside its variable's type is no transition. Two ways to the same `s'` with the same action are one transition.
+/// outside its variable's type is no transition. [`System::edges`] are further transitions of such states. Two ways to
+/// the same `s'` with the same action are one transition.
 #[derive(Clone, Debug)]
 pub struct System {
     /// Its name.
@@ -22,6 +24,8 @@ pub struct System {
     pub actions: Vec<ActionId>,
     /// Transition clauses.
     pub clauses: Vec<Clause>,
+    /// Transitions that are listed one by one, for graphs.
+    pub edges: Option<Edges>,
     /// Initial states.
     pub init: Expr<Leaf>,
     /// Labels; a label's expression reads only labels before it.

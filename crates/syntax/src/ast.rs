@@ -263,6 +263,8 @@ pub enum ExprKind {
     Number(String),
     /// A constant, variable, label, enumeration value, action, or parameter.
     Name(String),
+    /// `"NAME"`: an enumeration value or action, whatever its name
+    Text(String),
     /// `NAME[PATH]`: a label or variable of a path, `action[p]`, `state[p]`, `obs[p]`, `enabled[p]`.
     /// More than one path is kept for the message that refuses it.
     At(Ident, Vec<Ident>),

@@ -151,6 +151,13 @@ fn is_word_character(c: char) -> bool {
     c.is_ascii_alphanumeric() || c == '_'
 }
 
+/// Whether the text can be a name: a word that is not reserved.
+#[must_use]
+pub fn is_name(text: &str) -> bool {
+    let begins = text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
+    begins && text.chars().all(is_word_character) && RESERVED.iter().all(|(word, _)| *word != text)
+}
+
 /// Digits, with a fraction only where a digit follows the point: `0..2` begins with the number `0`.
 fn number(input: Input<'_>) -> Lexed<'_, (Lexeme, Input<'_>)> {
     let fraction = pair(char('.'), digit1);

@@ -11,6 +11,7 @@ mod span;
 mod token;
 
 pub use diagnostic::{Diagnostic, Severity};
+pub use lexer::is_name;
 pub use parser::{MAX_NESTING, parse};
 pub use render::{JsonDiagnostic, JsonPlace, JsonRelated, render, to_json};
 pub use similar::similar;

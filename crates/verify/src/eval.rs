@@ -29,7 +29,7 @@ pub(crate) fn eval<L>(expr: &Expr<L>, leaf: &impl Fn(&L) -> Option<Value>) -> Op
             None => eval(a, leaf).filter(|v| eval(b, leaf) == Some(*v)),
         },
         Expr::Member(es, set) => {
-            let tuple = es.iter().map(|e| int(e, leaf)).collect::<Option<Vec<i64>>>()?;
+            let tuple = es.iter().map(|e| member(e, leaf)).collect::<Option<Vec<i64>>>()?;
             Some(Value::Bool(set.contains(&tuple)))
         }
     }
@@ -47,6 +47,15 @@ fn int<L>(expr: &Expr<L>, leaf: &impl Fn(&L) -> Option<Value>) -> Option<i64> {
     match eval(expr, leaf)? {
         Value::Int(n) => Some(n),
         Value::Bool(_) | Value::Enum(_) | Value::Real(_) => None,
+    }
+}
+
+/// What stands for a value in a set of tuples.
+fn member<L>(expr: &Expr<L>, leaf: &impl Fn(&L) -> Option<Value>) -> Option<i64> {
+    match eval(expr, leaf)? {
+        Value::Int(n) => Some(n),
+        Value::Enum(position) => Some(i64::from(position)),
+        Value::Bool(_) | Value::Real(_) => None,
     }
 }
 

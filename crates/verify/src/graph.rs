@@ -181,7 +181,11 @@ impl<'p> Graph<'p> {
                 return Ok(true);
             }
         }
-        Ok(false)
+        let listed = self.system.edges.as_ref().is_some_and(|edges| {
+            let mut leads = edges.of(position(here, edges.var)).iter();
+            leads.any(|e| e.action == action && *with(here, edges.var, Value::Enum(e.to)) == **there)
+        });
+        Ok(listed)
     }
 
     /// Whether a clause whose guard holds leads to these values, which are of their variables' types.
@@ -244,6 +248,15 @@ impl<'p> Graph<'p> {
                     .collect();
             }
             found.extend(targets.into_iter().map(|target| (clause.actions.as_slice(), target)));
+        }
+        if let Some(edges) = &system.edges {
+            let to = |to| with(here, edges.var, Value::Enum(to));
+            found.extend(
+                edges
+                    .of(position(here, edges.var))
+                    .iter()
+                    .map(|e| (std::slice::from_ref(&e.action), to(e.to))),
+            );
         }
         Ok(found)
     }
@@ -348,6 +361,14 @@ fn read(values: &[Value], labels: &[bool], leaf: Leaf) -> Option<Value> {
     match leaf {
         Leaf::Var(v) => values.get(usize::from(v)).copied(),
         Leaf::Label(l) => labels.get(usize::from(l)).copied().map(Value::Bool),
+    }
+}
+
+/// Where an enumeration's value stands in it; of another type, which no lowered problem has there, nowhere.
+fn position(values: &[Value], var: VarId) -> u32 {
+    match values.get(usize::from(var)) {
+        Some(Value::Enum(position)) => *position,
+        _ => u32::MAX,
     }
 }
 

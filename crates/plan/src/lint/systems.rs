@@ -57,6 +57,14 @@ fn describe(system: &System, graph: &Graph, findings: &Findings, found: &mut Vec
     for &(first, second, state) in findings.overlaps.iter().take(OVERLAPS) {
         found.push(overlap(system, first, second, &example(state), findings.overlaps.len()));
     }
+    for &(clause, state) in &findings.added {
+        let what = if system.map.is_some() { "a move of the map" } else { "a transition of the graph" };
+        let message = format!("this clause is enabled together with {what}, such as in {}", example(state));
+        found.push(
+            Diagnostic::warning("overlapping-clauses", system.clauses[clause].span, message)
+                .with_help("the outcome is then nondeterministic; give what is new an action of its own"),
+        );
+    }
     if let Some(&(first, state)) = findings.lost.first() {
         found.push(lost(system, findings.lost.len(), first, &example(state)));
     }

@@ -122,6 +122,7 @@ pub(crate) fn base(map: &GridMap, rules: &Rules, actions: &mut Actions, span: Sp
         vars: variables(map, can_crash, span),
         actions: ids,
         clauses,
+        edges: None,
         labels: labels.collect(),
         init,
         absorb: if can_crash { var(CRASH) } else { Expr::FALSE },

@@ -1,5 +1,6 @@
 //! What a system starts from before its items are read, and the action names that systems share.
 
+use crate::edges::Edges;
 use crate::expr::{Expr, Leaf};
 use crate::ids::{ActionId, VarId};
 use crate::system::{Clause, Label, Map, Var};
@@ -29,12 +30,13 @@ impl Actions {
     }
 }
 
-/// The parts of a system that come from a map, or nothing for a plain system.
+/// The parts of a system that come from a map or a graph, or nothing for a plain system.
 #[derive(Debug)]
 pub(crate) struct Base {
     pub(crate) vars: TiVec<VarId, Var>,
     pub(crate) actions: Vec<ActionId>,
     pub(crate) clauses: Vec<Clause>,
+    pub(crate) edges: Option<Edges>,
     pub(crate) labels: Vec<Label>,
     pub(crate) init: Expr<Leaf>,
     pub(crate) absorb: Expr<Leaf>,
@@ -49,6 +51,7 @@ impl Default for Base {
             vars: TiVec::new(),
             actions: Vec::new(),
             clauses: Vec::new(),
+            edges: None,
             labels: Vec::new(),
             init: Expr::TRUE,
             absorb: Expr::FALSE,

@@ -1,5 +1,6 @@
 //! Collecting diagnostics without saying anything twice.
 
+use crate::display;
 use hyperplan_syntax::{Diagnostic, Span, similar};
 use rustc_hash::FxHashSet;
 
@@ -57,11 +58,11 @@ pub(crate) fn suggest<'a>(
 ) -> Diagnostic {
     let candidates: Vec<&str> = candidates.into_iter().collect();
     if let Some(meant) = similar(name, candidates.iter().copied()) {
-        return diagnostic.with_help(format!("did you mean `{meant}`?"));
+        return diagnostic.with_help(format!("did you mean `{}`?", display::name(meant)));
     }
     if candidates.is_empty() || candidates.len() > 12 {
         return diagnostic;
     }
-    let list: Vec<String> = candidates.iter().map(|c| format!("`{c}`")).collect();
+    let list: Vec<String> = candidates.iter().map(|c| format!("`{}`", display::name(c))).collect();
     diagnostic.with_help(format!("known here: {}", list.join(", ")))
 }

@@ -109,6 +109,7 @@ fn typed_inner<C: Context>(cx: &mut C, e: &ast::Expr, hint: Option<&EnumType>) -
         ExprKind::Bool(b) => Typed::Bool(Expr::Const(Value::Bool(*b))),
         ExprKind::Number(digits) => number(cx, digits, e.span),
         ExprKind::Name(name) => named(cx, name, e.span, hint),
+        ExprKind::Text(name) => quoted(cx, name, e.span, hint),
         ExprKind::At(name, paths) => cx.at(name, paths, e.span),
         ExprKind::Call(name, args) => cx.call(name, args, hint, e.span),
         ExprKind::Not(a) => truth(cx, a).map_or(Typed::Poison, |a| Typed::Bool(typed::not(a))),
@@ -256,11 +257,7 @@ fn named<C: Context>(cx: &mut C, name: &str, span: Span, hint: Option<&EnumType>
         }
         (None, None) => {
             let diagnostic = match hint {
-                Some(values) => {
-                    let message = format!("`{name}` is not one of {}", braces(values));
-                    let diagnostic = Diagnostic::error("unknown-name", span, message);
-                    super::diagnostics::suggest(diagnostic, name, values.iter().map(String::as_str))
-                }
+                Some(values) => no_such_value(name, values, span),
                 None => cx.unknown(name, span),
             };
             cx.error(diagnostic)
@@ -268,10 +265,31 @@ fn named<C: Context>(cx: &mut C, name: &str, span: Span, hint: Option<&EnumType>
     }
 }
 
+fn no_such_value(name: &str, values: &EnumType, span: Span) -> Diagnostic {
+    let message = format!("`{name}` is not one of {}", braces(values));
+    let diagnostic = Diagnostic::error("unknown-name", span, message);
+    super::diagnostics::suggest(diagnostic, name, values.iter().map(String::as_str))
+}
+
+/// A name in quotes: always a value of the enumeration that is expected.
+fn quoted<C: Context>(cx: &mut C, name: &str, span: Span, hint: Option<&EnumType>) -> Typed<C::Leaf> {
+    let Some(values) = hint else {
+        let message =
+            format!("{name:?} names a value of an enumeration or an action, but nothing here says which");
+        let help = "compare it with a variable of that enumeration or with a path's `action`";
+        return cx.error(Diagnostic::error("ambiguous-name", span, message).with_help(help));
+    };
+    match values.iter().position(|v| v == name).and_then(|index| u32::try_from(index).ok()) {
+        Some(index) => Typed::Enum(Expr::Const(Value::Enum(index)), values.clone()),
+        None => cx.error(no_such_value(name, values, span)),
+    }
+}
+
 /// Whether the expression may need the type of the other side to be understood.
 fn wants_hint<C: Context>(cx: &C, e: &ast::Expr) -> bool {
     match &e.kind {
         ExprKind::Name(name) => cx.is_enum_value(name),
+        ExprKind::Text(_) => true,
         ExprKind::If(_, a, b) => wants_hint(cx, a) || wants_hint(cx, b),
         _ => false,
     }
@@ -341,15 +359,26 @@ pub(crate) fn compare_typed<C: Context>(
         }
         (Typed::Bool(a), Typed::Bool(b)) if equality => Typed::Bool(negate(typed::iff(a, b))),
         (left, right) => {
+            let in_quotes = number_as_value(&left, &right).or_else(|| number_as_value(&right, &left));
             let (left, right) = (left.describe(), right.describe());
             let message = if equality {
                 format!("cannot compare {left} with {right}")
             } else {
                 format!("only numbers have an order, not {left} and {right}")
             };
-            cx.error(Diagnostic::error("type-mismatch", span, message))
+            let diagnostic = Diagnostic::error("type-mismatch", span, message);
+            cx.error(match in_quotes {
+                Some(number) => diagnostic.with_help(format!("write the value in quotes: `\"{number}\"`")),
+                None => diagnostic,
+            })
         }
     }
+}
+
+/// The number, where it was written for an enumeration value of that name.
+fn number_as_value<L>(values: &Typed<L>, number: &Typed<L>) -> Option<i64> {
+    let (Typed::Enum(_, values), Typed::Int(number, _)) = (values, number) else { return None };
+    known_int(number).filter(|number| values.contains(&number.to_string()))
 }
 
 /// The message about arithmetic that may leave 62 bits.

@@ -56,7 +56,7 @@ fn read_file(ast: &ast::System, file: &Text, env: &mut Env) -> Option<GridMap> {
 }
 
 /// The text of a file that the problem names at `span`.
-fn load_text(path: &str, span: Span, env: &mut Env) -> Option<String> {
+pub(super) fn load_text(path: &str, span: Span, env: &mut Env) -> Option<String> {
     let diagnostic = match env.loader.load(path) {
         Ok(bytes) => match String::from_utf8(bytes) {
             Ok(text) if !text.contains('\0') => return Some(text),

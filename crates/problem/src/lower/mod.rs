@@ -10,6 +10,8 @@ mod diagnostics;
 mod expr;
 mod formula;
 mod fractions;
+mod graphs;
+mod json;
 mod labels;
 mod limits;
 mod maps;

@@ -173,7 +173,9 @@ impl Context for PathContext<'_> {
     }
 
     fn resolve(&mut self, name: &str, _span: Span) -> Option<Typed<PathLeaf>> {
-        self.visible().typed(name)
+        // What a system lacks after an error may have been meant.
+        let missing = || self.poisoned.iter().any(|poisoned| *poisoned).then_some(Typed::Poison);
+        self.visible().typed(name).or_else(missing)
     }
 
     fn is_enum_value(&self, name: &str) -> bool {

@@ -144,7 +144,7 @@ fn in_list<C: Context>(cx: &mut C, element: &ast::Expr, members: &[ast::Expr], s
             (Typed::Int(..), Typed::Int(v, _)) => known.extend(known_int(v)),
             (Typed::Int(..) | Typed::Real(_), Typed::Int(..) | Typed::Real(_)) => {}
             (Typed::Bool(_), Typed::Bool(_)) => {}
-            (Typed::Enum(_, t), Typed::Enum(_, u)) if t == u => {}
+            (Typed::Enum(_, t), Typed::Enum(v, u)) if t == u => known.extend(known_position(v)),
             (e, other) => {
                 poisoned = true;
                 mismatch(cx, other, &e.describe(), *place);
@@ -160,7 +160,19 @@ fn in_list<C: Context>(cx: &mut C, element: &ast::Expr, members: &[ast::Expr], s
             let tuples = known.into_iter().map(|v| Box::from([v])).collect();
             Typed::Bool(member(vec![e], TupleSet::new(tuples)))
         }
+        Typed::Enum(e, _) if known.len() == values.len() && known.len() > FEW => {
+            let tuples = known.into_iter().map(|v| Box::from([v])).collect();
+            Typed::Bool(Expr::Member(vec![e], Arc::new(TupleSet::new(tuples))))
+        }
         e => one_of(cx, &e, values, span),
+    }
+}
+
+/// The position of a constant enumeration value.
+fn known_position<L>(e: &Expr<L>) -> Option<i64> {
+    match e {
+        Expr::Const(Value::Enum(position)) => Some(i64::from(*position)),
+        _ => None,
     }
 }
 

@@ -140,7 +140,7 @@ impl PathContext<'_> {
     /// `action[p] == NAME`
     fn with_name(&mut self, (special, name, paths, span): Side, other: &ast::Expr) -> Option<Expr<PathLeaf>> {
         let path = self.one_path(name, paths, span);
-        let ExprKind::Name(action) = &other.kind else {
+        let (ExprKind::Name(action) | ExprKind::Text(action)) = &other.kind else {
             let help = match special {
                 Special::Action => "compare it with an action, `none`, or another path's `action`".to_owned(),
                 special => format!("compare it with another path's `{}`", special.name()),
@@ -171,6 +171,9 @@ impl PathContext<'_> {
         if let Some(id) = self.actions.get(name).filter(|id| system.actions.contains(id)) {
             return Some(id);
         }
+        if self.poisoned[self.paths[path].system] {
+            return None;
+        }
         let message = format!("no action `{name}` in system {}", system.name);
         let candidates = system.actions.iter().map(|id| self.actions.names[*id].as_str());
         let diagnostic = suggest(Diagnostic::error("unknown-action", span, message), name, candidates);
@@ -187,7 +190,7 @@ impl PathContext<'_> {
     ) -> Option<Typed<PathLeaf>> {
         if let Set::Enabled(path, _) = set {
             let path = self.path(path);
-            let ExprKind::Name(name) = &element.kind else {
+            let (ExprKind::Name(name) | ExprKind::Text(name)) = &element.kind else {
                 let message = "only an action can be in `enabled[...]`";
                 return Some(self.error(Diagnostic::error("type-mismatch", element.span, message)));
             };

@@ -9,12 +9,12 @@ use super::labels;
 use super::limits::{Limits, MAX_RANGE};
 use super::state::{Names, StateContext};
 use super::typed::{Typed, and, or};
-use super::{Loader, maps};
+use super::{Loader, graphs, maps};
 use crate::expr::{Expr, Leaf, Type};
 use crate::ids::{ActionId, LabelId, VarId};
 use crate::system::{Label, System, Var};
 use hyperplan_syntax::ast::{self, Ident, SystemItem, SystemKind};
-use hyperplan_syntax::{Diagnostic, SourceMap};
+use hyperplan_syntax::{Diagnostic, SourceMap, Span};
 use rustc_hash::FxHashMap;
 
 /// What lowering a system needs besides its syntax.
@@ -43,13 +43,14 @@ pub(crate) fn lower_system(ast: &ast::System, env: &mut Env) -> (System, bool) {
     };
     declare_base(&mut cx, &base.labels);
     variables(&mut cx, ast);
-    let actions = if base.actions.is_empty() { actions(&mut cx, ast, env.actions) } else { base.actions };
+    let actions = actions(&mut cx, ast, base.actions, env.actions);
     let labels = lower_labels(&mut cx, ast, base.labels);
     let mut system = System {
         name: ast.name.name.clone(),
         vars: cx.vars.clone(),
         actions,
         clauses: base.clauses,
+        edges: base.edges,
         init: base.init,
         labels: labels.into_iter().collect(),
         absorb: base.absorb,
@@ -63,21 +64,17 @@ pub(crate) fn lower_system(ast: &ast::System, env: &mut Env) -> (System, bool) {
     (system, cx.poisoned)
 }
 
-/// Where the system starts from: a map, or nothing.
+/// Where the system starts from: a map, a graph, or nothing.
 fn base(ast: &ast::System, env: &mut Env) -> Base {
     match &ast.kind {
         SystemKind::Plain => Base::default(),
         SystemKind::GridRows(rows) => maps::inline(ast, rows, env),
         SystemKind::GridFile(file) => maps::file(ast, file, env),
-        SystemKind::Graph(file) => {
-            let message = "systems from graph files are not supported yet";
-            env.diagnostics.push(Diagnostic::error("not-supported", file.span, message));
-            Base { poisoned: true, ..Base::default() }
-        }
+        SystemKind::Graph(file) => graphs::file(ast, file, env),
     }
 }
 
-/// Makes the variables and labels of a map known.
+/// Makes the variables and labels of a map or graph known.
 fn declare_base(cx: &mut StateContext, labels: &[Label]) {
     let vars = cx.vars.iter_enumerated().map(|(id, var)| (var.name.clone(), Leaf::Var(id), var.span));
     let labels = labels.iter().enumerate();
@@ -115,14 +112,6 @@ fn declare(cx: &mut StateContext, name: &Ident, leaf: Leaf) -> bool {
 fn variables(cx: &mut StateContext, ast: &ast::System) {
     for item in &ast.items {
         let SystemItem::State(declarations) = item else { continue };
-        if ast.kind != SystemKind::Plain {
-            if let Some(first) = declarations.first() {
-                let message = "state variables besides those of the map are not supported yet";
-                cx.error(Diagnostic::error("not-supported", first.name.span, message));
-            }
-            cx.poisoned = true;
-            continue;
-        }
         for declaration in declarations {
             let id = VarId::from(cx.vars.len());
             match lower_type(cx, declaration) {
@@ -170,10 +159,16 @@ fn lower_type(cx: &mut StateContext, declaration: &ast::StateDecl) -> Option<Typ
     }
 }
 
-/// Reads the `action` items; a system without any has the action `step`.
-fn actions(cx: &mut StateContext, ast: &ast::System, known: &mut Actions) -> Vec<ActionId> {
-    let mut declared: Vec<ActionId> = Vec::new();
-    let mut places = FxHashMap::default();
+/// Reads the `action` items; they follow the moves of the map or the actions of the graph. A system without any has
+/// the action `step`.
+fn actions(
+    cx: &mut StateContext,
+    ast: &ast::System,
+    mut declared: Vec<ActionId>,
+    known: &mut Actions,
+) -> Vec<ActionId> {
+    let mut places: FxHashMap<String, Span> =
+        declared.iter().map(|id| (known.names[*id].clone(), ast.span)).collect();
     for item in &ast.items {
         let SystemItem::Action(names) = item else { continue };
         for name in names {
@@ -184,7 +179,7 @@ fn actions(cx: &mut StateContext, ast: &ast::System, known: &mut Actions) -> Vec
             } else if let Some(first) = places.get(name.name.as_str()) {
                 cx.error(duplicate("action", name, *first));
             } else {
-                places.insert(name.name.as_str(), name.span);
+                places.insert(name.name.clone(), name.span);
                 declared.push(known.intern(&name.name));
             }
         }
@@ -226,19 +221,7 @@ fn lower_item(
     system: &mut System,
 ) {
     match item {
-        SystemItem::State(_) | SystemItem::Label(..) => {}
-        SystemItem::Action(names) if *kind != SystemKind::Plain => {
-            if let Some(name) = names.first() {
-                let message = "actions besides the moves of the map are not supported yet";
-                let diagnostic = Diagnostic::error("not-supported", name.span, message);
-                cx.error(diagnostic.with_help("choose the moves with `moves up, down, ...;`"));
-            }
-        }
-        SystemItem::Action(_) => {}
-        SystemItem::On(clause) if *kind != SystemKind::Plain => {
-            let message = "transitions besides the moves of the map are not supported yet";
-            cx.error(Diagnostic::error("not-supported", clause.span, message));
-        }
+        SystemItem::State(_) | SystemItem::Label(..) | SystemItem::Action(_) => {}
         SystemItem::On(clause) => system.clauses.extend(lower_clause(cx, clause, system, actions)),
         SystemItem::Init(e) => {
             if let Some(e) = truth(cx, e) {

@@ -1,5 +1,6 @@
 //! Typed expressions while they are built: with the bounds of integers, and folded where constant.
 
+use crate::display::name;
 use crate::expr::{Comparison, Expr, Leaf, Rational, Type, Value};
 use std::sync::Arc;
 
@@ -106,9 +107,16 @@ impl<L> Typed<L> {
     }
 }
 
+/// More values of an enumeration than this are not listed: those of a graph may be many.
+const MAX_LISTED: usize = 12;
+
 /// `{a, b, c}`
 pub(crate) fn braces(values: &[String]) -> String {
-    format!("{{{}}}", values.join(", "))
+    let mut listed: Vec<String> = values.iter().take(MAX_LISTED).map(|v| name(v).into_owned()).collect();
+    if listed.len() < values.len() {
+        listed.push("...".to_owned());
+    }
+    format!("{{{}}}", listed.join(", "))
 }
 
 /// The value of a constant truth value.

@@ -16,6 +16,7 @@ fn push_parts<'a>(e: &'a Expr, stack: &mut Vec<&'a Expr>) {
         ExprKind::Bool(_)
         | ExprKind::Number(_)
         | ExprKind::Name(_)
+        | ExprKind::Text(_)
         | ExprKind::At(..)
         | ExprKind::Call(..) => {}
         ExprKind::Not(a) | ExprKind::Neg(a) => stack.push(a),

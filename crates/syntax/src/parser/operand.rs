@@ -98,6 +98,10 @@ impl Parser<'_> {
             Tok::True => ExprKind::Bool(true),
             Tok::False => ExprKind::Bool(false),
             Tok::Ident => return self.named(),
+            Tok::Str => {
+                let quoted = self.string("a name in quotes")?;
+                return Ok(Node::leaf(ExprKind::Text(quoted.text), quoted.span));
+            }
             Tok::LParen => return self.parenthesized(),
             Tok::If => return self.conditional(least),
             _ => return self.no_operand(),
@@ -207,7 +211,6 @@ impl Parser<'_> {
                 "this operator stands between two formulas: `a U b`"
             }
             Tok::Ident | Tok::Number => return self.fail("an expression"),
-            Tok::Str => "strings stand only in `grid` and `graph`",
             Tok::Assign if self.behind().start == token.span.start => "equality is written `==`",
             _ => return self.fail("an expression"),
         };

@@ -73,6 +73,7 @@ pub fn show(expr: &Expr) -> String {
     match &expr.kind {
         ExprKind::Bool(value) => value.to_string(),
         ExprKind::Number(text) | ExprKind::Name(text) => text.clone(),
+        ExprKind::Text(text) => format!("{text:?}"),
         ExprKind::At(name, paths) => format!("{}[{}]", name.name, names(paths)),
         ExprKind::Call(name, args) => format!("{}({})", name.name, names(args)),
         ExprKind::Not(inner) => format!("(! {})", show(inner)),

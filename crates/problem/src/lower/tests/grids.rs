@@ -157,11 +157,31 @@ fn mistakes_in_maps() {
     assert_eq!(codes(r#"system W = grid { ".." edge bounce; }"#), [("unknown-rule", "bounce".to_owned())]);
     assert_eq!(codes(r#"system W = grid { ".." legend 'S' = a; }"#)[0].0, "reserved-name");
     assert_eq!(codes(r#"system W = grid { ".." edge stay; edge crash; }"#)[0].0, "repeated-item");
-    assert_eq!(codes(r#"system W = grid { ".." state z: 0..1; }"#)[0].0, "not-supported");
-    assert_eq!(codes(r#"system W = grid { ".." action jump; }"#)[0].0, "not-supported");
-    assert_eq!(codes(r#"system W = grid { ".." on up { x' = 0; } }"#)[0].0, "not-supported");
+    assert_eq!(codes(r#"system W = grid { ".." state y: 0..1; }"#)[0].0, "duplicate-name");
+    assert_eq!(codes(r#"system W = grid { ".." action up; }"#)[0].0, "duplicate-name");
+    assert_eq!(codes(r#"system W = grid { ".." on jump { x' = 0; } }"#)[0].0, "unknown-action");
     assert_eq!(codes("system W { state x: 0..1; moves up; }")[0].0, "misplaced-item");
     assert_eq!(codes("const x = 1; system W = grid { \"..\" }")[0].0, "duplicate-name");
+}
+
+#[test]
+fn a_map_with_items_of_its_own() {
+    let text = r#"system W = grid { "..G" edge stay;
+        state full: bool; action fill; on fill when goal { full' = true; } on left when full { full' = false; } }"#;
+    let problem = ok(text).problem;
+    let system = problem.systems.first().expect("a system");
+    let by = |name: &str, x: i64, full: bool| {
+        let state = [int(x), int(0), Value::Bool(full)];
+        let action = problem.action(name).expect("declared");
+        let next = successors(system, &state, action).into_iter();
+        next.map(|s| (s[0], s[2])).collect::<Vec<_>>()
+    };
+    // A move leaves what is no place as it is; a clause adds an outcome to it.
+    assert_eq!(by("right", 1, true), [(int(2), Value::Bool(true))]);
+    assert_eq!(by("left", 1, false), [(int(0), Value::Bool(false))]);
+    assert_eq!(by("left", 1, true), [(int(0), Value::Bool(true)), (int(1), Value::Bool(false))]);
+    assert_eq!(by("fill", 2, false), [(int(2), Value::Bool(true))]);
+    assert_eq!(by("fill", 1, false), []);
 }
 
 #[test]

@@ -53,6 +53,15 @@ pub(super) fn successors(system: &System, state: &[Value], action: ActionId) -> 
         }
         all.extend(next);
     }
+    if let Some(edges) = &system.edges
+        && let Value::Enum(from) = state[usize::from(edges.var)]
+    {
+        for (_, edge) in edges.iter().filter(|(source, edge)| *source == from && edge.action == action) {
+            let mut next = state.to_vec();
+            next[usize::from(edges.var)] = Value::Enum(edge.to);
+            all.insert(next);
+        }
+    }
     all
 }
 

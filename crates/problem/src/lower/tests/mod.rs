@@ -1,4 +1,5 @@
 mod display;
+mod graphs;
 mod grids;
 mod interpreter;
 mod objectives;

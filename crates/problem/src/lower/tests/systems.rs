@@ -253,5 +253,5 @@ fn several_mistakes_in_one_run() {
     assert_eq!(found, ["yy", "z", "q"]);
     assert_eq!(codes("system S {} system S {}")[0].0, "duplicate-name");
     assert_eq!(codes("const A = 1; const A = 2;")[0].0, "duplicate-name");
-    assert_eq!(codes("system S = graph(\"g.json\") { }")[0].0, "not-supported");
+    assert_eq!(codes("system S = graph(\"g.json\") { }")[0].0, "cannot-read");
 }

@@ -1,0 +1,324 @@
+//! Systems from graph files: states and transitions listed one by one, in JSON.
+
+use super::base::Base;
+use super::diagnostics::suggest;
+use super::json::{Kind, Piece};
+use super::maps::load_text;
+use super::system::Env;
+use crate::edges::{Edge, Edges};
+use crate::expr::{Comparison, Expr, Leaf, TupleSet, Type, Value};
+use crate::ids::{ActionId, VarId};
+use crate::system::{Label, Var};
+use hyperplan_syntax::ast::{self, Text};
+use hyperplan_syntax::{Diagnostic, Span, is_name};
+use rustc_hash::FxHashMap;
+use std::sync::Arc;
+
+/// The only variable of a graph: the state it is in.
+const NODE: VarId = VarId(0);
+
+/// More mistakes of one file are not worth telling one by one.
+const MAX_ERRORS: usize = 10;
+
+/// Most states that a graph may have.
+const MAX_STATES: usize = 4_000_000;
+
+/// What a graph file may say.
+const MEMBERS: [&str; 5] = ["states", "actions", "initial", "transitions", "labels"];
+
+/// The system that a graph file describes, as far as it can be read.
+pub(super) fn file(ast: &ast::System, file: &Text, env: &mut Env) -> Base {
+    let nothing = Base { poisoned: true, ..Base::default() };
+    let Some(text) = load_text(&file.text, file.span, env) else { return nothing };
+    let text: Arc<str> = text.into();
+    let source = env.sources.add(file.text.clone(), text.clone());
+    if u32::try_from(text.len()).is_err() {
+        let message = format!("`{}` is larger than 4 GiB", file.text);
+        env.diagnostics.push(Diagnostic::error("too-large", file.span, message));
+        return nothing;
+    }
+    let mut reader = Reader { env, errors: 0 };
+    match Piece::parse(source, &text) {
+        Ok(root) => reader.graph(root, ast.span).unwrap_or(nothing),
+        Err(diagnostic) => {
+            reader.error(*diagnostic);
+            nothing
+        }
+    }
+}
+
+struct Reader<'a, 'e> {
+    env: &'a mut Env<'e>,
+    errors: usize,
+}
+
+/// Names in their order, and the position of each.
+#[derive(Default)]
+struct Table {
+    names: Vec<String>,
+    positions: FxHashMap<String, (u32, Span)>,
+}
+
+impl Reader<'_, '_> {
+    fn error(&mut self, diagnostic: Diagnostic) {
+        self.errors += 1;
+        if self.errors <= MAX_ERRORS {
+            self.env.diagnostics.push(diagnostic);
+        }
+    }
+
+    fn bad(&mut self, span: Span, message: impl Into<String>) {
+        self.error(Diagnostic::error("bad-graph", span, message));
+    }
+
+    /// The parts of the system; poisoned after a message, `None` where nothing can be made of it.
+    fn graph(&mut self, root: Piece<'_>, span: Span) -> Option<Base> {
+        let members = self.members(root)?;
+        let states = self.required(root, &members, "states");
+        let actions = self.required(root, &members, "actions");
+        let transitions = self.required(root, &members, "transitions");
+        let states = states.and_then(|states| self.table(states, "state"));
+        let actions = actions.and_then(|actions| self.table(actions, "action"));
+        if let Some((_, (_, span))) = actions.as_ref().and_then(|a| a.positions.get_key_value("none")) {
+            let message = "`none` says in objectives that no action was taken: no action can have that name";
+            self.error(Diagnostic::error("reserved-name", *span, message));
+        }
+        let ids: Vec<ActionId> =
+            actions.iter().flat_map(|a| &a.names).map(|name| self.env.actions.intern(name)).collect();
+        let edges = match (&states, &actions, transitions) {
+            (Some(states), Some(actions), Some(all)) => self.transitions(all, states, actions, &ids),
+            _ => Vec::new(),
+        };
+        let none = Table::default();
+        let known = states.as_ref().unwrap_or(&none);
+        let init = match members.get("initial") {
+            Some(initial) if states.is_some() => self.initial(*initial, known),
+            _ => Expr::TRUE,
+        };
+        let labels = match members.get("labels") {
+            Some(labels) if states.is_some() => self.labels(*labels, known),
+            _ => Vec::new(),
+        };
+        if self.errors > MAX_ERRORS {
+            let message = format!("{} more mistakes of the graph are not shown", self.errors - MAX_ERRORS);
+            self.env.diagnostics.push(Diagnostic::error("bad-graph", root.start(), message));
+        }
+        let states = states?.names;
+        let count = states.len();
+        let node = Var { name: "node".into(), ty: Type::Enum(states.into()), span };
+        Some(Base {
+            vars: [node].into_iter().collect(),
+            actions: ids,
+            edges: Some(Edges::new(NODE, count, edges)),
+            labels,
+            init,
+            poisoned: self.errors > 0,
+            ..Base::default()
+        })
+    }
+
+    /// The members of the file's object by name; what nobody knows is reported.
+    fn members<'t>(&mut self, root: Piece<'t>) -> Option<FxHashMap<&'static str, Piece<'t>>> {
+        let Some(all) = root.object() else {
+            let message = format!("expected an object with the graph, found {}", root.describe());
+            self.bad(root.start(), message);
+            return None;
+        };
+        let mut members = FxHashMap::default();
+        let mut places: FxHashMap<&str, Span> = FxHashMap::default();
+        for (name, value) in all {
+            let text = name.text().unwrap_or_default();
+            let Some(known) = MEMBERS.into_iter().find(|known| *known == text) else {
+                let message = format!("a graph has no `{text}`");
+                self.error(suggest(
+                    Diagnostic::error("unknown-member", name.span(), message),
+                    &text,
+                    MEMBERS,
+                ));
+                continue;
+            };
+            if let Some(first) = places.insert(known, name.span()) {
+                let message = format!("`{known}` is given twice");
+                let diagnostic = Diagnostic::error("duplicate-name", name.span(), message);
+                self.error(diagnostic.with_related(first, "the first one"));
+            }
+            members.insert(known, value);
+        }
+        Some(members)
+    }
+
+    fn required<'t>(
+        &mut self,
+        root: Piece<'_>,
+        members: &FxHashMap<&str, Piece<'t>>,
+        name: &str,
+    ) -> Option<Piece<'t>> {
+        let found = members.get(name).copied();
+        if found.is_none() {
+            self.bad(root.start(), format!("the graph has no `{name}`"));
+        }
+        found
+    }
+
+    fn list<'t>(&mut self, piece: Piece<'t>, of: &str) -> Option<Vec<Piece<'t>>> {
+        let members = piece.array();
+        if members.is_none() {
+            self.bad(piece.start(), format!("expected a list of {of}s, found {}", piece.describe()));
+        }
+        members
+    }
+
+    /// The states or the actions.
+    fn table(&mut self, piece: Piece<'_>, what: &str) -> Option<Table> {
+        let members = self.list(piece, what)?;
+        if members.is_empty() {
+            self.bad(piece.span(), format!("the graph has no {what}"));
+            return None;
+        }
+        if members.len() > MAX_STATES {
+            self.bad(piece.start(), format!("the graph has more than {MAX_STATES} {what}s"));
+            return None;
+        }
+        let mut table = Table::default();
+        for member in members {
+            let Some(name) = self.name(member, what) else { continue };
+            let span = member.span();
+            if let Some((_, first)) = table.positions.get(&name) {
+                let message = format!("the {what} `{name}` is listed twice");
+                let diagnostic = Diagnostic::error("duplicate-name", span, message);
+                self.error(diagnostic.with_related(*first, "the first one"));
+                continue;
+            }
+            let position = u32::try_from(table.names.len()).unwrap_or(u32::MAX);
+            table.positions.insert(name.clone(), (position, span));
+            table.names.push(name);
+        }
+        Some(table)
+    }
+
+    /// A name: a string, or an integer, which stands for its digits.
+    fn name(&mut self, piece: Piece<'_>, what: &str) -> Option<String> {
+        let name = match piece.kind() {
+            Kind::Text => piece.text(),
+            Kind::Number => piece.integer().map(|n| n.to_string()),
+            _ => None,
+        };
+        match name {
+            Some(name) if name.is_empty() || name.chars().any(char::is_control) => {
+                self.bad(piece.span(), "a name is not empty and has no control characters");
+                None
+            }
+            Some(name) => Some(name),
+            None => {
+                let found = piece.describe();
+                let an = if what == "action" { "an" } else { "a" };
+                self.bad(piece.start(), format!("{an} {what} is a string or an integer, not {found}"));
+                None
+            }
+        }
+    }
+
+    /// The position of a name that was listed.
+    fn known(&mut self, piece: Piece<'_>, table: &Table, what: &str) -> Option<u32> {
+        let name = self.name(piece, what)?;
+        let position = table.positions.get(&name).map(|(position, _)| *position);
+        if position.is_none() {
+            let message = format!("no {what} `{name}` in the graph");
+            let diagnostic = Diagnostic::error(
+                if what == "state" { "unknown-state" } else { "unknown-action" },
+                piece.span(),
+                message,
+            );
+            // Looking for what was meant takes time; beyond the limit nobody sees it.
+            let shown = self.errors < MAX_ERRORS;
+            let names = table.names.iter().map(String::as_str);
+            self.error(if shown { suggest(diagnostic, &name, names) } else { diagnostic });
+        }
+        position
+    }
+
+    fn transitions(
+        &mut self,
+        all: Piece<'_>,
+        states: &Table,
+        actions: &Table,
+        ids: &[ActionId],
+    ) -> Vec<(u32, Edge)> {
+        let all = self.list(all, "transition").unwrap_or_default();
+        let mut edges = Vec::with_capacity(all.len());
+        for transition in all {
+            let parts = transition.array();
+            let Some([from, action, to]) = parts.as_deref() else {
+                let found = match parts {
+                    Some(parts) => format!("a list of {}", parts.len()),
+                    None => transition.describe().to_owned(),
+                };
+                let message = format!("a transition is `[STATE, ACTION, STATE]`, not {found}");
+                self.bad(transition.span(), message);
+                continue;
+            };
+            let from = self.known(*from, states, "state");
+            let action = self.known(*action, actions, "action");
+            let to = self.known(*to, states, "state");
+            if let (Some(from), Some(action), Some(to)) = (from, action, to) {
+                edges.push((from, Edge { action: ids[action as usize], to }));
+            }
+        }
+        edges
+    }
+
+    fn initial(&mut self, piece: Piece<'_>, states: &Table) -> Expr<Leaf> {
+        let Some(members) = self.list(piece, "state") else { return Expr::TRUE };
+        if members.is_empty() {
+            let diagnostic = Diagnostic::error("bad-graph", piece.span(), "no state is initial");
+            self.error(diagnostic.with_help("leave `initial` out where every state is"));
+        }
+        one_of(self.all_known(&members, states))
+    }
+
+    fn all_known(&mut self, members: &[Piece<'_>], states: &Table) -> Vec<u32> {
+        members.iter().filter_map(|member| self.known(*member, states, "state")).collect()
+    }
+
+    fn labels(&mut self, piece: Piece<'_>, states: &Table) -> Vec<Label> {
+        let Some(all) = piece.object() else {
+            let message = format!(
+                "expected an object with a list of states for each label, found {}",
+                piece.describe()
+            );
+            self.bad(piece.start(), message);
+            return Vec::new();
+        };
+        let mut labels = Vec::new();
+        for (name, members) in all {
+            let (text, span) = (name.text().unwrap_or_default(), name.span());
+            let known = match self.list(members, "state") {
+                Some(members) => self.all_known(&members, states),
+                None => continue,
+            };
+            if !is_name(&text) {
+                let message = format!("{text:?} cannot be the name of a label");
+                let help = "names consist of the letters a-z and A-Z, digits, and `_`, and are no keywords";
+                self.error(Diagnostic::error("bad-graph", span, message).with_help(help));
+                continue;
+            }
+            labels.push(Label { name: text, expr: one_of(known), span });
+        }
+        labels
+    }
+}
+
+/// The node is one of these.
+fn one_of(mut positions: Vec<u32>) -> Expr<Leaf> {
+    positions.sort_unstable();
+    positions.dedup();
+    let node = Expr::Leaf(Leaf::Var(NODE));
+    match positions.as_slice() {
+        [] => Expr::FALSE,
+        [only] => Expr::Compare(Comparison::Eq, Box::new(node), Box::new(Expr::Const(Value::Enum(*only)))),
+        several => {
+            let tuples = several.iter().map(|position| Box::from([i64::from(*position)]));
+            Expr::Member(vec![node], Arc::new(TupleSet::new(tuples.collect())))
+        }
+    }
+}
