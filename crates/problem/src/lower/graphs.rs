@@ -209,6 +209,10 @@ impl Reader<'_, '_> {
                 None
             }
             Some(name) => Some(name),
+            None if piece.kind() == Kind::Text => {
+                self.bad(piece.span(), "the string has an escape that stands for no character");
+                None
+            }
             None => {
                 let found = piece.describe();
                 let an = if what == "action" { "an" } else { "a" };

@@ -102,7 +102,7 @@ fn the_prelude_is_free_of_mistakes() {
     let source = sources.add("prelude.hp", crate::prelude::TEXT);
     let (file, diagnostics) = hyperplan_syntax::parse(source, crate::prelude::TEXT);
     assert!(diagnostics.is_empty(), "{diagnostics:#?}");
-    assert_eq!(file.items.len(), 6);
+    assert_eq!(file.items.len(), 7);
     assert!(crate::prelude::templates().iter().all(|t| t.doc.contains("The paper's (")), "documented");
 }
 
@@ -126,6 +126,11 @@ fn instances_of_the_prelude() {
             "action_robust(start, goal, avoid, T - 1)",
             "exists p. forall q. start[p] & !avoid[p] U[0,5] goal[p] \
              & (start[q] & G[0,5] (action[p] != action[q] -> N G[0,5] action[p] == action[q]) -> !avoid[q] U[0,5] goal[q])",
+        ),
+        (
+            "action_robust_successive(start, goal, avoid, 2, T)",
+            "exists p. forall q. start[p] & !avoid[p] U[0,6] goal[p] \
+             & (start[q] & G[1,5] F[0,1] action[p] == action[q] -> !avoid[q] U[0,6] goal[q])",
         ),
         (
             "initial_state_opaque(start, goal, T)",
