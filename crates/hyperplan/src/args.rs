@@ -197,11 +197,15 @@ pub(crate) struct Horizon {
 pub(crate) struct Check {
     #[command(flatten)]
     pub(crate) problem: Problem,
-    #[command(flatten)]
-    pub(crate) output: Output,
     /// Exit status 2 if there is a warning
     #[arg(short = 'D', long)]
     pub(crate) deny_warnings: bool,
+    /// How messages are printed; `json`: one object a line on standard output, for editors
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = Format::Text)]
+    pub(crate) format: Format,
+    /// Prints the file, formatted, instead of what is doubtful; a file with errors is not printed
+    #[arg(long, conflicts_with_all = ["format", "timeout", "deny_warnings"])]
+    pub(crate) print: bool,
     /// Seconds for the whole command
     #[arg(long, value_name = "SECONDS")]
     pub(crate) timeout: Option<f64>,

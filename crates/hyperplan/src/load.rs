@@ -97,10 +97,14 @@ impl Loader for Beside {
 pub(crate) fn read_source(path: &Path) -> Outcome<String> {
     let cannot = |why: String| Failure::input(format_args!("cannot read {}: {why}", path.display()));
     let bytes = read_bytes(path).map_err(|e| cannot(reason(&e)))?;
-    match String::from_utf8(bytes) {
-        Ok(text) if !text.contains('\0') => Ok(text),
-        _ => Err(cannot("it is not a text file".to_owned())),
-    }
+    String::from_utf8(bytes).map_err(|error| {
+        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        if good.contains(&0) {
+            return cannot("it is not a text file".to_owned());
+        }
+        let line = good.iter().filter(|byte| **byte == b'\n').count() + 1;
+        cannot(format!("it is not in UTF-8; the first byte that cannot be read is on line {line}"))
+    })
 }
 
 fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {

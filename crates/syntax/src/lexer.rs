@@ -4,8 +4,8 @@
 //! silence by the parser. Text with control characters is not read at all.
 
 use nom::branch::alt;
-use nom::bytes::complete::{is_not, tag, take_until, take_while, take_while1};
-use nom::character::complete::{char, digit1, none_of, not_line_ending, satisfy};
+use nom::bytes::complete::{is_not, tag, take_until, take_while};
+use nom::character::complete::{char, digit1, none_of, satisfy};
 use nom::combinator::{map, opt, recognize, rest, value};
 use nom::error::{Error, ErrorKind};
 use nom::multi::many0_count;
@@ -34,26 +34,48 @@ enum Lexeme {
     BlockComment,
 }
 
-/// The tokens of `text`, the last one [`Tok::Eof`]; or an error if it is no text at all.
-pub(crate) fn lex(source: SourceId, text: &str) -> (Vec<Token<'_>>, Vec<Diagnostic>) {
-    let mut errors = Vec::new();
-    let mut tokens = Vec::new();
-    let end = text.trim_end().len();
-    if let Some(error) = not_text(source, text) {
-        errors.push(error);
-    } else {
-        read(source, text, &mut tokens, &mut errors);
-    }
-    tokens.push(Token { tok: Tok::Eof, text: "", span: Span::new(source, end..end), first_on_line: true });
-    (tokens, errors)
+/// What a text consists of.
+#[derive(Default)]
+pub(crate) struct Lexemes<'a> {
+    /// The last one is [`Tok::Eof`].
+    pub(crate) tokens: Vec<Token<'a>>,
+    pub(crate) comments: Vec<Comment<'a>>,
+    pub(crate) errors: Vec<Diagnostic>,
 }
 
-fn read<'a>(source: SourceId, text: &'a str, tokens: &mut Vec<Token<'a>>, errors: &mut Vec<Diagnostic>) {
+/// A comment up to the end of its line.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Comment<'a> {
+    /// With the slashes, without blanks at the end.
+    pub(crate) text: &'a str,
+    /// Where it begins.
+    pub(crate) start: usize,
+}
+
+/// The tokens and comments of `text`; or an error if it is no text at all.
+pub(crate) fn lex(source: SourceId, text: &str) -> Lexemes<'_> {
+    let mut lexemes = Lexemes::default();
+    let end = text.trim_end().len();
+    if let Some(error) = not_text(source, text) {
+        lexemes.errors.push(error);
+    } else {
+        read(source, text, &mut lexemes);
+    }
+    let eof = Token { tok: Tok::Eof, text: "", span: Span::new(source, end..end), first_on_line: true };
+    lexemes.tokens.push(eof);
+    lexemes
+}
+
+fn read<'a>(source: SourceId, text: &'a str, lexemes: &mut Lexemes<'a>) {
+    let Lexemes { tokens, comments, errors } = lexemes;
     let mut input = Input::new(text.strip_prefix('\u{feff}').unwrap_or(text));
     let skipped = text.len() - input.fragment().len();
     let mut line = 0;
     loop {
-        input = blanks(input);
+        input = blanks(input, |comment| {
+            let start = comment.location_offset() + skipped;
+            comments.push(Comment { text: comment.fragment().trim_end(), start });
+        });
         // A prime belongs to the word it touches; elsewhere `'` opens a quoted letter.
         let touches_word = |last: &Token<'_>| last.span.end as usize == input.location_offset() + skipped;
         let after_word = tokens.last().is_some_and(|last| last.tok == Tok::Ident && touches_word(last));
@@ -126,11 +148,22 @@ fn complaint(what: Lexeme, piece: &Input<'_>, span: Span) -> Diagnostic {
 }
 
 /// Passes over blanks and comments.
-fn blanks(input: Input<'_>) -> Input<'_> {
-    let blank = value((), take_while1(char::is_whitespace));
-    let comment = value((), pair(tag("//"), not_line_ending));
-    let skipped: Lexed<'_, usize> = many0_count(alt((blank, comment))).parse(input);
-    skipped.map_or(input, |(rest, _)| rest)
+fn blanks<'a>(mut input: Input<'a>, mut found: impl FnMut(Input<'a>)) -> Input<'a> {
+    let blank = |input| take_while(char::is_whitespace)(input);
+    let comment = |input| recognize(pair(tag("//"), line)).parse(input);
+    loop {
+        let after: Lexed<'_, Input<'_>> = blank(input);
+        input = after.map_or(input, |(rest, _)| rest);
+        let commented: Lexed<'_, Input<'_>> = comment(input);
+        let Ok((rest, piece)) = commented else { return input };
+        found(piece);
+        input = rest;
+    }
+}
+
+/// The rest of a line; `\r` ends one too, as it does in old files.
+fn line(input: Input<'_>) -> Lexed<'_, Input<'_>> {
+    take_while(|c| !matches!(c, '\n' | '\r'))(input)
 }
 
 fn lexeme<'a>(input: Input<'a>, after_word: bool) -> Lexed<'a, (Lexeme, Input<'a>)> {
@@ -174,7 +207,7 @@ fn string(input: Input<'_>) -> Lexed<'_, (Lexeme, Input<'_>)> {
     let inside =
         many0_count(alt((value((), is_not("\"\\\r\n")), value((), preceded(char('\\'), none_of("\r\n"))))));
     let closed = recognize(delimited(char('"'), inside, char('"')));
-    let unclosed = recognize(pair(char('"'), not_line_ending));
+    let unclosed = recognize(pair(char('"'), line));
     alt((
         map(closed, |piece| (Lexeme::Good(Tok::Str), piece)),
         map(unclosed, |piece| (Lexeme::UnclosedString, piece)),

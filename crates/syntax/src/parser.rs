@@ -8,13 +8,13 @@
 mod expr;
 mod item;
 mod operand;
-mod operator;
+pub(crate) mod operator;
 mod recover;
 mod system;
 
 use crate::ast::{File, Ident, Text};
 use crate::diagnostic::Diagnostic;
-use crate::lexer::lex;
+use crate::lexer::{Lexemes, lex};
 use crate::similar::similar;
 use crate::span::{SourceId, Span};
 use crate::token::{Tok, Token};
@@ -31,7 +31,7 @@ const MAX_ERRORS: usize = 50;
 /// Parses a problem file. With errors, the file has what could be parsed all the same.
 #[must_use]
 pub fn parse(source: SourceId, text: &str) -> (File, Vec<Diagnostic>) {
-    let (tokens, errors) = lex(source, text);
+    let Lexemes { tokens, errors, .. } = lex(source, text);
     if tokens.len() == 1 {
         return (File::default(), errors);
     }

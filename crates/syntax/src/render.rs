@@ -144,12 +144,10 @@ impl Report for Shown {
     }
 }
 
-/// A place for programs: lines and columns from 1, columns in characters, the end exclusive.
+/// A place for programs: lines and columns from 1, columns in characters, ends exclusive.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "camelCase")]
-pub struct JsonPlace {
-    /// The name of the source.
-    pub file: String,
+pub struct JsonSpan {
     /// Line of the first character.
     pub line: usize,
     /// Column of the first character.
@@ -158,30 +156,36 @@ pub struct JsonPlace {
     pub end_line: usize,
     /// Column of the place behind the last character.
     pub end_column: usize,
+    /// The first byte, from 0, in the whole file.
+    pub start: u32,
+    /// The byte behind the last one.
+    pub end: u32,
 }
 
 /// Another place that matters.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct JsonRelated {
+    /// The name of the source.
+    pub file: String,
     /// A few words.
     pub message: String,
     /// The place.
-    #[serde(flatten)]
-    pub place: JsonPlace,
+    pub span: JsonSpan,
 }
 
 /// A diagnostic for programs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct JsonDiagnostic {
+    /// The name of the source that the place is in; of the problem file where there is no place.
+    pub file: String,
     /// `error` or `warning`.
     pub severity: &'static str,
     /// See [`Diagnostic::code`].
     pub code: &'static str,
     /// One sentence.
     pub message: String,
-    /// The place; its members are absent where there is none.
-    #[serde(flatten)]
-    pub place: Option<JsonPlace>,
+    /// The place, or null where the message is about no particular one.
+    pub span: Option<JsonSpan>,
     /// Words beside the place, or null.
     pub label: Option<String>,
     /// Advice, or null.
@@ -190,27 +194,34 @@ pub struct JsonDiagnostic {
     pub related: Vec<JsonRelated>,
 }
 
-/// The diagnostic as data.
+/// The diagnostic as data; `file` is the name of the problem file.
 #[must_use]
-pub fn to_json(sources: &SourceMap, diagnostic: &Diagnostic) -> JsonDiagnostic {
+pub fn to_json(sources: &SourceMap, file: &str, diagnostic: &Diagnostic) -> JsonDiagnostic {
+    let name = |span: Span| sources.get(span.source).name.clone();
     let place = |span: Span| {
+        let end = span.end.max(span.start);
         let (line, column) = sources.position(span);
-        let (end_line, end_column) = sources.position(Span { start: span.end.max(span.start), ..span });
-        JsonPlace { file: sources.get(span.source).name.clone(), line, column, end_line, end_column }
+        let (end_line, end_column) = sources.position(Span { start: end, ..span });
+        JsonSpan { line, column, end_line, end_column, start: span.start, end }
     };
     let related = diagnostic.related.iter();
     JsonDiagnostic {
+        file: diagnostic.span.map_or_else(|| file.to_owned(), name),
         severity: match diagnostic.severity {
             Severity::Error => "error",
             Severity::Warning => "warning",
         },
         code: diagnostic.code,
         message: diagnostic.message.clone(),
-        place: diagnostic.span.map(place),
+        span: diagnostic.span.map(place),
         label: (!diagnostic.label.is_empty()).then(|| diagnostic.label.clone()),
         help: diagnostic.help.clone(),
         related: related
-            .map(|(span, words)| JsonRelated { message: words.clone(), place: place(*span) })
+            .map(|(span, words)| JsonRelated {
+                file: name(*span),
+                message: words.clone(),
+                span: place(*span),
+            })
             .collect(),
     }
 }

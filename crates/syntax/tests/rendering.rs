@@ -108,7 +108,7 @@ fn strange_spans() {
         let span = Span { source: id, start, end };
         let error = Diagnostic::error("x", span, "message").with_label("here").with_related(span, "there");
         assert!(render(&sources, std::slice::from_ref(&error), false, 80).contains("message"));
-        assert_eq!(to_json(&sources, &error).message, "message");
+        assert_eq!(to_json(&sources, "rooms.hp", &error).message, "message");
     }
     let shown = render(&sources, &[Diagnostic::error_nowhere("x", "nothing to mark")], false, 80);
     assert_eq!(shown, "error[x]\n\n  x nothing to mark\n");
@@ -120,14 +120,15 @@ fn json() {
     let text = "const T = 6;\nconst S = é;\n";
     let sources = sources(text);
     let (_, errors) = parse(hyperplan_syntax::SourceId(0), text);
-    let value = serde_json::to_value(to_json(&sources, &errors[0])).expect("plain data");
+    let value = serde_json::to_value(to_json(&sources, "rooms.hp", &errors[0])).expect("plain data");
     let expected = serde_json::json!({
         "severity": "error", "code": "bad-character", "message": "unexpected character `é`",
-        "file": "rooms.hp", "line": 2, "column": 11, "endLine": 2, "endColumn": 12,
+        "file": "rooms.hp",
+        "span": {"line": 2, "column": 11, "endLine": 2, "endColumn": 12, "start": 23, "end": 25},
         "label": null, "help": "names consist of the letters a-z and A-Z, digits, and `_`", "related": [],
     });
     assert_eq!(value, expected);
-    let nowhere = to_json(&sources, &Diagnostic::error_nowhere("x", "m"));
+    let nowhere = to_json(&sources, "rooms.hp", &Diagnostic::error_nowhere("x", "m"));
     let value = serde_json::to_value(nowhere).expect("plain data");
-    assert_eq!(value.get("file"), None);
+    assert_eq!((&value["file"], &value["span"]), (&"rooms.hp".into(), &serde_json::Value::Null));
 }

@@ -7,16 +7,19 @@ use crate::load::{Loaded, read_source};
 use crate::output::Output;
 use crate::report;
 use hyperplan_plan::{Budget, Lints};
-use hyperplan_syntax::{Diagnostic, JsonDiagnostic, SourceMap, to_json};
-use serde::Serialize;
+use hyperplan_syntax::{SourceId, parse, print, to_json};
 
 pub(crate) fn run(args: &args::Check, verbose: bool, out: &mut Output) -> Outcome {
     let deadline = config::deadline(args.timeout)?;
     let file = args.problem.file.display().to_string();
     let source = read_source(&args.problem.file)?;
     let (lowered, sources) = Loaded::lower(&args.problem, &source);
-    let mut lints = Lints::default();
     let good = !lowered.has_errors();
+    if args.print {
+        report::diagnostics(&sources, &lowered.diagnostics, out);
+        return if good { formatted(&source, out) } else { Ok(Status::Input) };
+    }
+    let mut lints = Lints::default();
     if good {
         lints.warnings.extend(lowered.unused);
         add(&mut lints, hyperplan_plan::lint_systems(&lowered.problem, &deadline));
@@ -27,34 +30,34 @@ pub(crate) fn run(args: &args::Check, verbose: bool, out: &mut Output) -> Outcom
     }
     let mut diagnostics = lowered.diagnostics;
     diagnostics.append(&mut lints.warnings);
-    let warned = diagnostics.iter().any(|d| !d.is_error());
-    match args.output.format {
+    let warnings = diagnostics.iter().filter(|d| !d.is_error()).count();
+    // Whether there was time for a question says nothing about the file.
+    let undecided = lints.undecided.len();
+    if verbose {
+        diagnostics.append(&mut lints.undecided);
+    }
+    match args.format {
+        args::Format::Text => report::diagnostics(&sources, &diagnostics, out),
         args::Format::Json => {
-            let report = Report::new(file, &sources, &diagnostics, &lints);
-            out.line(report::json(&report)?)?;
-        }
-        args::Format::Text => {
-            report::diagnostics(&sources, &diagnostics, out);
-            if verbose {
-                report::diagnostics(&sources, &lints.undecided, out);
-            }
-            for note in &lints.notes {
-                out.remark(format_args!("note: {note}"));
-            }
-            if good {
-                let systems = count(lowered.problem.systems.len(), "system");
-                let objectives = count(lowered.problem.objectives.len(), "objective");
-                let warnings = count(diagnostics.len(), "warning");
-                let more = match lints.undecided.len() {
-                    0 => String::new(),
-                    n if verbose => format!(" ({} undecided)", count(n, "question")),
-                    n => format!(" ({} undecided, -v says which)", count(n, "question")),
-                };
-                out.line(format_args!("{file}: {systems}, {objectives}, {warnings}{more}"))?;
+            for diagnostic in &diagnostics {
+                out.line(report::json(&to_json(&sources, &file, diagnostic))?)?;
             }
         }
     }
-    let denied = args.deny_warnings && warned;
+    for note in &lints.notes {
+        out.remark(format_args!("note: {note}"));
+    }
+    if good && args.format == args::Format::Text {
+        let systems = count(lowered.problem.systems.len(), "system");
+        let objectives = count(lowered.problem.objectives.len(), "objective");
+        let more = match undecided {
+            0 => String::new(),
+            n if verbose => format!(" ({} undecided)", count(n, "question")),
+            n => format!(" ({} undecided, -v says which)", count(n, "question")),
+        };
+        out.line(format_args!("{file}: {systems}, {objectives}, {}{more}", count(warnings, "warning")))?;
+    }
+    let denied = args.deny_warnings && warnings > 0;
     Ok(if good && !denied { Status::Good } else { Status::Input })
 }
 
@@ -72,29 +75,11 @@ fn count(n: usize, what: &str) -> String {
     }
 }
 
-#[derive(Serialize)]
-struct Report {
-    file: String,
-    errors: usize,
-    warnings: usize,
-    diagnostics: Vec<JsonDiagnostic>,
-    /// Questions that were not decided; no warnings.
-    undecided: Vec<JsonDiagnostic>,
-    /// What was not looked at.
-    notes: Vec<String>,
-}
-
-impl Report {
-    fn new(file: String, sources: &SourceMap, diagnostics: &[Diagnostic], lints: &Lints) -> Self {
-        let errors = diagnostics.iter().filter(|d| d.is_error()).count();
-        let json = |ds: &[Diagnostic]| ds.iter().map(|d| to_json(sources, d)).collect();
-        Report {
-            file,
-            errors,
-            warnings: diagnostics.len() - errors,
-            diagnostics: json(diagnostics),
-            undecided: json(&lints.undecided),
-            notes: lints.notes.clone(),
-        }
-    }
+/// Prints the file as its syntax tree says, with its comments.
+fn formatted(text: &str, out: &mut Output) -> Outcome {
+    let (file, _) = parse(SourceId(0), text);
+    let printed = print(&file, text);
+    out.write(|out| out.write_all(printed.as_bytes()))?;
+    out.flush()?;
+    Ok(Status::Good)
 }

@@ -310,13 +310,18 @@ impl Parser<'_> {
     /// Whether the word at this place cannot be a name, since an operand follows it.
     fn operand_follows(&self) -> bool {
         match self.peek_at(1) {
-            Tok::Ident => Infix::of_slip(Tok::Ident, self.token_at(1).text).is_none(),
+            // `within K semantics S` is the one place where a word follows a number's name.
+            Tok::Ident => {
+                let next = self.token_at(1).text;
+                next != "semantics" && Infix::of_slip(Tok::Ident, next).is_none()
+            }
             Tok::Number | Tok::Bang | Tok::True | Tok::False | Tok::Tilde => true,
             Tok::Next | Tok::WeakNext | Tok::Finally | Tok::Globally => true,
             // `not(p)` may be the use of a definition, `not (x == 1)` may not.
-            Tok::LParen => {
-                self.peek_at(2) != Tok::Ident || !matches!(self.peek_at(3), Tok::RParen | Tok::Comma)
-            }
+            Tok::LParen => match self.peek_at(2) {
+                Tok::Ident => !matches!(self.peek_at(3), Tok::RParen | Tok::Comma),
+                inside => inside != Tok::RParen,
+            },
             _ => false,
         }
     }

@@ -170,7 +170,7 @@ impl Parser<'_> {
     fn formula(&mut self) -> Parse<Option<Formula>> {
         let open = self.expect(Tok::LBrace, "`{`")?;
         let mut defines = Vec::new();
-        while self.at_word("define") {
+        while self.at_member(Block::Defines) {
             defines.extend(self.member(Block::Defines, |parser| parser.define(Block::Defines)));
         }
         let inside = self.member(Block::Formula, |parser| {

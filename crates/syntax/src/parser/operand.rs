@@ -135,7 +135,11 @@ impl Parser<'_> {
         let operand = matches!(self.peek(), Tok::Ident | Tok::Bang | Tok::Number)
             || Prefix::of(self.peek()).is_some_and(|op| op != Prefix::Neg);
         let token = self.token();
-        if !operand || token.first_on_line || Infix::of_slip(token.tok, token.text).is_some() {
+        if !operand
+            || token.first_on_line
+            || self.at_word("semantics")
+            || Infix::of_slip(token.tok, token.text).is_some()
+        {
             return Ok(());
         }
         let span = self.tokens[self.at - 1].span;

@@ -4,18 +4,20 @@ use crate::ast::{ArithOp, BinaryOp, CompareOp, UnaryOp};
 use crate::token::Tok;
 
 /// How tightly an operator binds; a greater number binds more tightly.
-pub(super) mod level {
-    pub(in crate::parser) const LOWEST: u8 = 0;
-    pub(in crate::parser) const IFF: u8 = 1;
-    pub(in crate::parser) const IMPLIES: u8 = 2;
-    pub(in crate::parser) const OR: u8 = 3;
-    pub(in crate::parser) const AND: u8 = 4;
-    pub(in crate::parser) const UNTIL: u8 = 5;
-    pub(in crate::parser) const LOGIC_PREFIX: u8 = 6;
-    pub(in crate::parser) const COMPARE: u8 = 7;
-    pub(in crate::parser) const SUM: u8 = 8;
-    pub(in crate::parser) const PRODUCT: u8 = 9;
-    pub(in crate::parser) const NEG: u8 = 10;
+pub(crate) mod level {
+    pub(crate) const LOWEST: u8 = 0;
+    pub(crate) const IFF: u8 = 1;
+    pub(crate) const IMPLIES: u8 = 2;
+    pub(crate) const OR: u8 = 3;
+    pub(crate) const AND: u8 = 4;
+    pub(crate) const UNTIL: u8 = 5;
+    pub(crate) const LOGIC_PREFIX: u8 = 6;
+    pub(crate) const COMPARE: u8 = 7;
+    pub(crate) const SUM: u8 = 8;
+    pub(crate) const PRODUCT: u8 = 9;
+    pub(crate) const NEG: u8 = 10;
+    /// Names, numbers, what has brackets around it.
+    pub(crate) const OPERAND: u8 = 11;
 }
 
 /// Operators between two operands.

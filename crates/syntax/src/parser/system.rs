@@ -1,5 +1,6 @@
 //! Systems: their maps, variables, actions and clauses.
 
+use super::operator::Infix;
 use super::recover::{Block, ITEMS};
 use super::{Abort, Parse, Parser, did_you_mean};
 use crate::ast::{
@@ -181,7 +182,9 @@ impl Parser<'_> {
             "real" => Some(Type::Real),
             _ => None,
         };
-        if let Some(known) = known {
+        let begins_range = matches!(self.peek_at(1), Tok::DotDot | Tok::LBracket | Tok::LParen)
+            || Infix::of(self.peek_at(1)).is_some();
+        if let Some(known) = known.filter(|_| !begins_range) {
             self.bump();
             return Ok(known);
         }

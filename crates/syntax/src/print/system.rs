@@ -1,0 +1,208 @@
+//! Systems and their items.
+
+use super::layout::Indent;
+use super::{Printer, end};
+use crate::ast::{
+    Clause, Expr, Ident, Set, StateDecl, System, SystemItem, SystemKind, Text, Type, Update, UpdateValue,
+};
+
+impl Printer<'_> {
+    pub(super) fn system(&mut self, system: &System) {
+        self.begin_word(system.name.span.start as usize);
+        self.layout.text(format!("system {}", system.name.name));
+        let head = system.span.end as usize;
+        let close = if self.source.opens(head) { self.source.braces(head).1 } else { head.saturating_sub(1) };
+        match &system.kind {
+            SystemKind::Plain => return self.items(system, close),
+            SystemKind::GridRows(rows) => {
+                self.rows(system, rows);
+                if system.items.is_empty() {
+                    return;
+                }
+            }
+            SystemKind::GridFile(file) => self.layout.text(format!(" = grid({})", quoted(&file.text))),
+            SystemKind::Graph(file) => self.layout.text(format!(" = graph({})", quoted(&file.text))),
+        }
+        if system.items.is_empty() {
+            self.layout.text(";");
+        } else {
+            self.items(system, close);
+        }
+    }
+
+    /// ` = grid { "..." }`. Items inside the braces of the rows are printed inside a second pair.
+    fn rows(&mut self, system: &System, rows: &[Text]) {
+        self.layout.text(" = grid");
+        self.open_block();
+        for row in rows {
+            self.begin(row.span.start as usize);
+            self.layout.text(quoted(&row.text));
+        }
+        let close = (system.span.end as usize).saturating_sub(1);
+        let items_inside = system.items.first().is_some_and(|item| self.item_start(item) < close);
+        let last = rows.last().map_or(0, |row| row.span.end as usize);
+        self.close_block(if items_inside { last } else { close });
+    }
+
+    /// `{ ITEMS }`, closed at `close`.
+    fn items(&mut self, system: &System, close: usize) {
+        if system.items.is_empty() && self.source.comments_before(close) == 0 {
+            self.layout.text(" { }");
+            return;
+        }
+        self.open_block();
+        for item in &system.items {
+            self.begin(self.item_start(item));
+            self.system_item(item);
+        }
+        self.close_block(close);
+    }
+
+    /// Where the item's word stands.
+    fn item_start(&self, item: &SystemItem) -> usize {
+        let behind = match item {
+            SystemItem::On(Clause { span, .. }) | SystemItem::Legend { span, .. } => {
+                return span.start as usize;
+            }
+            SystemItem::State(decls) => decls.first().map(|decl| decl.name.span),
+            SystemItem::Action(names) | SystemItem::Moves(names) => names.first().map(|name| name.span),
+            SystemItem::Init(e) | SystemItem::Absorb(e) => Some(e.span),
+            SystemItem::Label(name, _) | SystemItem::Obstacle(name) | SystemItem::Edge(name) => {
+                Some(name.span)
+            }
+            SystemItem::Observe(es) => es.first().map(|e| e.span),
+        };
+        behind.map_or(0, |span| self.source.word_before(span.start as usize))
+    }
+
+    fn system_item(&mut self, item: &SystemItem) {
+        let end = match item {
+            SystemItem::On(clause) => return self.clause(clause),
+            SystemItem::State(decls) => self.state(decls),
+            SystemItem::Action(names) => self.named("action ", names),
+            SystemItem::Moves(names) => self.named("moves ", names),
+            SystemItem::Init(e) => self.constraint("init ", e),
+            SystemItem::Absorb(e) => self.constraint("absorb ", e),
+            SystemItem::Observe(es) => {
+                self.layout.text("observe ");
+                self.exprs(es);
+                es.last().map_or(0, end)
+            }
+            SystemItem::Label(name, e) => {
+                self.assignment(format!("label {}", name.name), e);
+                end(e)
+            }
+            SystemItem::Obstacle(rule) => self.named("obstacle ", std::slice::from_ref(rule)),
+            SystemItem::Edge(rule) => self.named("edge ", std::slice::from_ref(rule)),
+            SystemItem::Legend { letter, label, span } => {
+                let label = label.as_ref().map_or("#", |label| &label.name);
+                self.layout.text(format!("legend '{}' = {label}", letter.text));
+                span.end as usize
+            }
+        };
+        self.semicolon(end);
+    }
+
+    fn named(&mut self, word: &'static str, names: &[Ident]) -> usize {
+        self.layout.text(word);
+        self.names(names, ",");
+        names.last().map_or(0, |name| name.span.end as usize)
+    }
+
+    fn constraint(&mut self, word: &'static str, e: &Expr) -> usize {
+        self.layout.text(word);
+        self.expr(e);
+        end(e)
+    }
+
+    fn state(&mut self, decls: &[StateDecl]) -> usize {
+        self.layout.text("state ");
+        self.layout.open(Indent::Here);
+        for (nth, decl) in decls.iter().enumerate() {
+            if nth > 0 {
+                self.layout.text(",");
+                self.layout.fill();
+            }
+            self.comments(decl.name.span.start as usize);
+            self.layout.text(format!("{}: ", decl.name.name));
+            match &decl.ty {
+                Type::Bool => self.layout.text("bool"),
+                Type::Int => self.layout.text("int"),
+                Type::Real => self.layout.text("real"),
+                Type::Range(lo, hi) => self.range(lo, hi),
+                Type::Enum(values) => {
+                    self.layout.text("{");
+                    self.names(values, ",");
+                    self.layout.text("}");
+                }
+            }
+        }
+        self.layout.close();
+        decls.last().map_or(0, |decl| decl.ty_span.end as usize)
+    }
+
+    /// `on A | B when GUARD { UPDATES }`; on one line if it was and fits.
+    fn clause(&mut self, clause: &Clause) {
+        self.layout.text("on ");
+        match &clause.actions {
+            None => self.layout.text("*"),
+            Some(actions) => self.names(actions, " |"),
+        }
+        if let Some(guard) = &clause.guard {
+            self.layout.text(" when ");
+            self.expr(guard);
+        }
+        let (open, close) = self.source.braces(clause.span.end as usize);
+        let comments = self.source.comments_before(close) > 0;
+        let Some(first) = clause.updates.first().filter(|_| !comments) else {
+            if comments {
+                return self.updates(&clause.updates, close);
+            }
+            return self.layout.text(" { }");
+        };
+        if self.source.breaks_between(open + 1, first.var.span.start as usize) {
+            return self.updates(&clause.updates, close);
+        }
+        self.layout.open(Indent::By(0));
+        self.layout.text(" {");
+        for update in &clause.updates {
+            self.layout.soft_indented(2);
+            self.update(update);
+        }
+        self.layout.soft();
+        self.layout.text("}");
+        self.layout.close();
+    }
+
+    fn updates(&mut self, updates: &[Update], close: usize) {
+        self.open_block();
+        for update in updates {
+            self.begin(update.var.span.start as usize);
+            self.update(update);
+        }
+        self.close_block(close);
+    }
+
+    fn update(&mut self, update: &Update) {
+        let end = match &update.value {
+            UpdateValue::Assign(value) => {
+                self.assignment(format!("{}'", update.var.name), value);
+                end(value)
+            }
+            UpdateValue::Choose(set) => {
+                self.layout.text(format!("{}' in ", update.var.name));
+                self.set(set);
+                match set {
+                    Set::List(_, span) | Set::Enabled(_, span) => span.end as usize,
+                    Set::Range(_, hi) => end(hi),
+                }
+            }
+        };
+        self.semicolon(end);
+    }
+}
+
+/// In quotes, with escapes.
+fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
+}
