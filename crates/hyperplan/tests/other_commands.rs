@@ -36,14 +36,39 @@ fn check_counts() {
 
 #[test]
 fn check_as_json() {
-    let run = hyperplan(&["check", "fail/unknown-label.hp", "--format", "json"]);
-    assert_eq!(run.status, 2);
-    let report = &run.json()[0];
-    assert_eq!((&report["errors"], &report["warnings"]), (&1.into(), &0.into()));
-    let error = &report["diagnostics"][0];
-    assert_eq!(error["severity"], "error");
-    assert_eq!(error["file"], "fail/unknown-label.hp");
-    assert_eq!((&error["line"], &error["column"]), (&13.into(), &31.into()));
+    let run = hyperplan(&["check", "fail/several-errors.hp", "--format", "json"]);
+    assert_eq!((run.status, run.stderr.as_str()), (2, ""));
+    let lines = run.json();
+    assert_eq!(lines.len(), 4, "a line for each error");
+    let error = &lines[1];
+    let expected = serde_json::json!({
+        "file": "fail/several-errors.hp", "severity": "error", "code": "unknown-name",
+        "message": "no label or variable `gaol` in system Rooms",
+        "span": error["span"], "label": null, "help": "did you mean `goal`?", "related": [],
+    });
+    assert_eq!(*error, expected);
+    let span = &error["span"];
+    let place = ["line", "column", "endLine", "endColumn"].map(|key| span[key].as_u64());
+    assert_eq!(place, [14, 43, 14, 47].map(Some));
+    let text = std::fs::read_to_string(common::specs().join("fail/several-errors.hp")).expect("readable");
+    let offset = |key: &str| usize::try_from(span[key].as_u64().expect("a number")).expect("small");
+    assert_eq!(&text[offset("start")..offset("end")], "gaol");
+    let sound = hyperplan(&["check", "case-studies/iso-10.hp", "--format", "json"]);
+    assert_eq!((sound.status, sound.stdout.as_str()), (0, ""));
+}
+
+#[test]
+fn check_prints_the_file_formatted() {
+    let run = hyperplan(&["check", "--print", "rooms.hp"]);
+    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
+    assert!(run.stdout.starts_with("// The 3 x 2 rooms of the paper's Figure 5"), "{}", run.stdout);
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("rooms.hp");
+    std::fs::write(&file, &run.stdout).expect("written");
+    assert_eq!(hyperplan(&["check", "--print", text(&file)]).stdout, run.stdout);
+    let run = hyperplan(&["check", "--print", "fail/unknown-label.hp"]);
+    assert_eq!((run.status, run.stdout.as_str()), (2, ""));
+    assert!(run.stderr.contains("gaol"), "{}", run.stderr);
 }
 
 #[test]

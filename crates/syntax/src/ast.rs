@@ -29,6 +29,8 @@ pub struct Text {
 pub struct File {
     /// Declarations in the order of the file.
     pub items: Vec<Item>,
+    /// Declarations that could not be parsed, and so are missing above; empty for a file without errors.
+    pub skipped: Vec<Span>,
 }
 
 /// A top-level declaration.

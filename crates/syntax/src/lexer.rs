@@ -14,6 +14,7 @@ use nom::{IResult, Input as _, Parser};
 use nom_locate::LocatedSpan;
 
 use crate::diagnostic::Diagnostic;
+use crate::parser::habit;
 use crate::span::{SourceId, Span};
 use crate::token::{RESERVED, SYMBOLS, Tok, Token};
 
@@ -78,7 +79,9 @@ fn read<'a>(source: SourceId, text: &'a str, lexemes: &mut Lexemes<'a>) {
         });
         // A prime belongs to the word it touches; elsewhere `'` opens a quoted letter.
         let touches_word = |last: &Token<'_>| last.span.end as usize == input.location_offset() + skipped;
-        let after_word = tokens.last().is_some_and(|last| last.tok == Tok::Ident && touches_word(last));
+        // Behind `x[p]` one is as wrong as any, but it is a prime that is meant.
+        let primed = |last: &Token<'_>| matches!(last.tok, Tok::Ident | Tok::RBracket) && touches_word(last);
+        let after_word = tokens.last().is_some_and(primed);
         let Ok((next, (lexeme, piece))) = lexeme(input, after_word) else { return };
         let start = piece.location_offset() + skipped;
         let span = Span::new(source, start..start + piece.fragment().len());
@@ -139,10 +142,16 @@ fn complaint(what: Lexeme, piece: &Input<'_>, span: Span) -> Diagnostic {
                 format!("unexpected character `{shown}`")
             };
             let error = Diagnostic::error("bad-character", span, message);
-            if text.chars().any(char::is_alphabetic) {
-                return error.with_help("names consist of the letters a-z and A-Z, digits, and `_`");
+            let first = text.chars().next().unwrap_or_default();
+            match (habit::looks_like(first), first) {
+                (Some(sign), _) => error.with_help(format!("write `{sign}`")),
+                (_, '@') => error.with_help("what is read of a path is written `goal[p]`"),
+                (_, '?') => error.with_help("write `if C then A else B`"),
+                _ if text.chars().any(char::is_alphabetic) => {
+                    error.with_help("names consist of the letters a-z and A-Z, digits, and `_`")
+                }
+                _ => error,
             }
-            error
         }
     }
 }

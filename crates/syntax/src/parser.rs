@@ -6,6 +6,7 @@
 //! at the closing `}`, or at the next line that begins with a keyword.
 
 mod expr;
+pub(crate) mod habit;
 mod item;
 mod operand;
 pub(crate) mod operator;
@@ -35,8 +36,9 @@ pub fn parse(source: SourceId, text: &str) -> (File, Vec<Diagnostic>) {
     if tokens.len() == 1 {
         return (File::default(), errors);
     }
-    let mut parser = Parser { tokens, at: 0, text, errors, braces: 0, depth: 0 };
-    let file = parser.file();
+    let mut parser = Parser { tokens, at: 0, text, errors, braces: 0, depth: 0, skipped: Vec::new() };
+    let mut file = parser.file();
+    file.skipped = parser.skipped;
     let mut errors = parser.errors;
     errors.sort_by_key(|error| error.span.map(|span| span.start));
     if errors.len() > MAX_ERRORS {
@@ -62,6 +64,8 @@ struct Parser<'a> {
     braces: u32,
     /// Expressions open at this point.
     depth: u32,
+    /// See [`File::skipped`].
+    skipped: Vec<Span>,
 }
 
 impl<'a> Parser<'a> {

@@ -73,7 +73,7 @@ fn all_problem_files() {
 /// Trees are the same after printing and parsing.
 #[test]
 fn random_trees() {
-    for seed in 0..400 {
+    for seed in 0..150 {
         let file = random::tree::file(&mut random::Random(seed));
         let printed = print(&file, "");
         let (again, errors) = parse(SOURCE, &printed);
@@ -91,7 +91,7 @@ fn damaged_texts() {
     let start = Instant::now();
     let mut sound = 0;
     let mut seed = 0;
-    while seed < 500 || start.elapsed() < Duration::from_secs(1) {
+    while seed < 100 || start.elapsed() < Duration::from_secs(1) {
         let mut random = random::Random(seed);
         let (text, other) = (&texts[random.below(texts.len())], &texts[random.below(texts.len())]);
         let text = random::damage::damaged(&mut random, text, other);
@@ -102,7 +102,7 @@ fn damaged_texts() {
         }
         seed += 1;
     }
-    assert!(sound > 20, "of {seed} texts {sound} are sound");
+    assert!(sound > 5, "of {seed} texts {sound} are sound");
 }
 
 /// Whether there is nothing wrong with the text.

@@ -39,6 +39,13 @@ impl Diagnostics {
         self.uses.pop();
     }
 
+    /// Adds a message, unless there is one for that place already.
+    pub(crate) fn push_where_none(&mut self, diagnostic: Diagnostic) {
+        if !self.list.iter().any(|known| known.span == diagnostic.span) {
+            self.push(diagnostic);
+        }
+    }
+
     /// Whether there is an error among them.
     pub(crate) fn any_error(&self) -> bool {
         self.list.iter().any(Diagnostic::is_error)

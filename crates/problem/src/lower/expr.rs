@@ -260,6 +260,10 @@ fn named<C: Context>(cx: &mut C, name: &str, span: Span, hint: Option<&EnumType>
                 Some(values) => no_such_value(name, values, span),
                 None => cx.unknown(name, span),
             };
+            let diagnostic = match name.to_ascii_lowercase().as_str() {
+                word @ ("true" | "false") => diagnostic.with_help(format!("write `{word}`")),
+                _ => diagnostic,
+            };
             cx.error(diagnostic)
         }
     }

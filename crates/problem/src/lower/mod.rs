@@ -4,8 +4,10 @@
 //! unknown from there on, so that one mistake does not look like ten. No file is read here: a [`Loader`] does that.
 
 mod base;
+mod bodies;
 mod clauses;
 mod consts;
+mod damage;
 mod diagnostics;
 mod expr;
 mod formula;
@@ -108,7 +110,11 @@ pub fn read(
     let source = sources.add(name, text);
     let (file, mut diagnostics) = hyperplan_syntax::parse(source, text);
     if diagnostics.iter().any(Diagnostic::is_error) {
-        // Declarations that could not be read would look like unknown names.
+        if !file.items.is_empty() {
+            let found = lower(&file, sources, loader, overrides).diagnostics;
+            diagnostics.extend(damage::independent(found, &file, sources));
+            diagnostics.sort_by_key(|diagnostic| diagnostic.span);
+        }
         return Lowered { diagnostics, ..Lowered::default() };
     }
     if file.items.is_empty() {
@@ -147,6 +153,7 @@ pub fn lower(
         template_names,
     };
     let objectives = objectives(file, &shared, &mut diagnostics);
+    bodies::check(file, &shared, &mut diagnostics);
     Lowered {
         problem: Problem { actions: actions.names, systems, objectives },
         diagnostics: diagnostics.into_list(),

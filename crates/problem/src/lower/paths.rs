@@ -102,6 +102,18 @@ impl<'a> PathContext<'a> {
         self.error(suggest(diagnostic, name, candidates))
     }
 
+    /// Whether some system has a label or variable of that name.
+    fn is_read_of_paths(&self, name: &str) -> bool {
+        self.systems.iter().any(|system| system.label(name).is_some() || system.var(name).is_some())
+    }
+
+    /// `goal_p`, as other tools write `goal[p]`: the label or variable, and the path.
+    fn with_underscore<'n>(&self, name: &'n str) -> Option<(&'n str, &'n str)> {
+        let (read, path) = name.rsplit_once('_')?;
+        let known = self.frame.paths.iter().any(|(known, _)| *known == path);
+        (known && self.is_read_of_paths(read)).then_some((read, path))
+    }
+
     /// The label that a template's parameter stands for.
     fn argument(&mut self, param: &Ident, actual: &str, span: Span, path: PathId) -> Typed<PathLeaf> {
         match self.read(actual, span, path) {
@@ -126,6 +138,11 @@ impl<'a> PathContext<'a> {
         let Some((define, local)) = self.defines.get(name.name.as_str()).copied() else {
             let diagnostic =
                 Diagnostic::error("unknown-name", name.span, format!("no definition `{}`", name.name));
+            if let ([path], true) = (args, self.is_read_of_paths(&name.name)) {
+                let help = format!("write `{}[{}]`", name.name, path.name);
+                self.diagnostics.push(diagnostic.with_help(help));
+                return None;
+            }
             let mut known: Vec<&str> = self.defines.keys().copied().collect();
             known.sort_unstable();
             self.diagnostics.push(suggest(diagnostic, &name.name, known));
@@ -183,7 +200,7 @@ impl Context for PathContext<'_> {
     }
 
     fn unknown(&mut self, name: &str, span: Span) -> Diagnostic {
-        if self.systems.iter().any(|s| s.label(name).is_some() || s.var(name).is_some()) {
+        if self.is_read_of_paths(name) {
             let path = self.frame.paths.first().map_or("p", |(path, _)| path);
             let message = format!("`{name}` is read of a path: say of which");
             let help = format!("write `{name}[{path}]`");
@@ -195,6 +212,9 @@ impl Context for PathContext<'_> {
             return Diagnostic::error("misplaced-action", span, message).with_help(help);
         }
         let diagnostic = Diagnostic::error("unknown-name", span, format!("no constant `{name}`"));
+        if let Some((read, path)) = self.with_underscore(name) {
+            return diagnostic.with_help(format!("write `{read}[{path}]`"));
+        }
         let named = self.systems.iter().flat_map(|s| {
             let labels = s.labels.iter().map(|l| l.name.as_str());
             labels.chain(s.vars.iter().map(|v| v.name.as_str()))

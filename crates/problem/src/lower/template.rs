@@ -68,7 +68,7 @@ pub(super) fn check(template: &ast::Template, diagnostics: &mut Diagnostics) {
 }
 
 /// Reports paths that nothing quantifies.
-fn unquantified(body: &Expr, known: &[&str], diagnostics: &mut Diagnostics) {
+pub(super) fn unquantified(body: &Expr, known: &[&str], diagnostics: &mut Diagnostics) {
     visit(body, &mut |e| {
         let paths: Vec<&Ident> = match &e.kind {
             ExprKind::At(_, paths) | ExprKind::Call(_, paths) => paths.iter().collect(),

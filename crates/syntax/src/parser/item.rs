@@ -1,7 +1,7 @@
 //! Top-level declarations, quantifiers and the bodies of objectives.
 
 use super::recover::{Block, ITEMS, TOP};
-use super::{Abort, Parse, Parser};
+use super::{Abort, Parse, Parser, habit};
 use crate::ast::{Const, Define, Expr, File, Ident, Item, Objective, ObjectiveBody, Quantifier, Template};
 use crate::diagnostic::Diagnostic;
 use crate::similar::similar;
@@ -23,7 +23,7 @@ impl Parser<'_> {
                 items.push(item);
             }
         }
-        File { items }
+        File { items, ..File::default() }
     }
 
     /// A declaration; `None` where its braces are sound but what is inside is not.
@@ -36,8 +36,23 @@ impl Parser<'_> {
                 Tok::Ident if ITEMS.contains(&token.text) => {
                     Some(format!("`{}` stands inside a system", token.text))
                 }
+                Tok::Ident if self.peek_at(1) == Tok::Assign => {
+                    Some(format!("a constant is declared as `const {} = ...;`", token.text))
+                }
                 _ => None,
             };
+            if let Some((advice, foreign)) = habit::instead_of_declaration(token.tok, token.text) {
+                let failed = self.fail_with(expected, Some(advice.to_owned()));
+                // The whole text is of another language: one message is enough.
+                while foreign && self.peek() != Tok::Eof && !self.at_member(Block::File) {
+                    self.bump();
+                }
+                if foreign {
+                    self.skipped_from(token.span);
+                    return Ok(None);
+                }
+                return failed;
+            }
             return self.fail_with(expected, help);
         };
         match word {
@@ -77,7 +92,7 @@ impl Parser<'_> {
     /// The sign `=` of a declaration.
     pub(super) fn equals(&mut self) -> Parse<()> {
         let token = self.token();
-        if matches!(token.tok, Tok::EqEq | Tok::ColonEq) {
+        if matches!(token.tok, Tok::EqEq | Tok::ColonEq | Tok::Colon) {
             self.bump();
             self.wrong(token.span, format!("`{}` does not define a name", token.text), "write `=`");
             return Ok(());
@@ -149,7 +164,9 @@ impl Parser<'_> {
     /// `= TEMPLATE(args);`
     fn instance(&mut self, bounded: bool) -> Parse<ObjectiveBody> {
         if self.peek() != Tok::Assign {
-            return self.fail(if bounded { "`semantics`, `{` or `=`" } else { "`within`, `{` or `=`" });
+            let expected = if bounded { "`semantics`, `{` or `=`" } else { "`within`, `{` or `=`" };
+            let help = "a formula stands in braces: `objective NAME { exists p. ... }`";
+            return self.fail_with(expected, Some(help.to_owned()));
         }
         self.bump();
         let template = self.any_word("the name of a template")?;
@@ -204,7 +221,10 @@ impl Parser<'_> {
                 "an operator or `}`",
                 Some("quantifiers stand in front of the whole formula: `exists p. forall q. ...`".to_owned()),
             ),
-            _ => self.fail("an operator or `}`"),
+            _ => {
+                let help = self.instead_of_operator().map(str::to_owned);
+                self.fail_with("an operator or `}`", help)
+            }
         }
     }
 
@@ -224,6 +244,13 @@ impl Parser<'_> {
                 if self.eat(Tok::Colon).is_some() {
                     let system = self.any_word("the name of a system")?;
                     add(&mut unsorted, Some(&system));
+                }
+                if self.peek() == Tok::Ident && matches!(self.peek_at(1), Tok::Dot | Tok::Comma | Tok::Colon)
+                {
+                    let message = "expected `,` between path variables";
+                    let error = Diagnostic::error("missing-comma", self.behind(), message);
+                    self.report(error.with_label("`,` missing here"));
+                    continue;
                 }
                 if self.peek() != Tok::Comma || matches!(self.peek_at(1), Tok::Exists | Tok::Forall) {
                     break;
@@ -300,6 +327,9 @@ impl Parser<'_> {
 fn comment_above(text: &str, place: Span) -> String {
     let above = text.get(..place.start as usize).unwrap_or("");
     let Some(line_start) = above.rfind('\n') else { return String::new() };
+    if !above[line_start..].trim().is_empty() {
+        return String::new();
+    }
     let mut lines: Vec<&str> = above[..line_start]
         .lines()
         .rev()

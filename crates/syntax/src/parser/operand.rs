@@ -14,6 +14,7 @@ impl Parser<'_> {
     #[inline(never)]
     pub(super) fn bounds(&mut self) -> Parse<Bounds> {
         if self.peek() != Tok::LBracket || self.peek_at(1) == Tok::RBracket {
+            self.check_interval_brackets()?;
             return Ok(None);
         }
         let open = self.bump();
@@ -30,6 +31,9 @@ impl Parser<'_> {
         let second = self.node(level::SUM)?;
         height = height.max(second.height);
         interval.lo = Some(std::mem::replace(&mut interval.hi, second.expr));
+        if self.peek() == Tok::RParen {
+            return self.fail_with("`]`", Some("both ends belong to an interval: `[a,b]`".to_owned()));
+        }
         self.expect(Tok::RBracket, "`]`")?;
         interval.span = self.since(open.span);
         Ok(Some((interval, height)))
@@ -173,6 +177,10 @@ impl Parser<'_> {
         let mut items = vec![*node.expr];
         items.extend(rest);
         let whole = self.since(open.span);
+        if self.peek() == Tok::Ident && !self.token().first_on_line && self.peek_at(1) == Tok::LBracket {
+            let help = "an interval is written in brackets: `F[0,T] goal[p]`";
+            return self.fail_with("an operator", Some(help.to_owned()));
+        }
         self.inner(ExprKind::Tuple(items), whole, node.height.max(height), open.span)
     }
 
@@ -215,6 +223,7 @@ impl Parser<'_> {
                 "this operator stands between two formulas: `a U b`"
             }
             Tok::Ident | Tok::Number => return self.fail("an expression"),
+            Tok::Arrow if self.behind().end == token.span.start && self.at > 0 => "write `->`",
             Tok::Assign if self.behind().start == token.span.start => "equality is written `==`",
             _ => return self.fail("an expression"),
         };

@@ -99,6 +99,8 @@ impl Infix {
                 "and" => (Infix::And, "&"),
                 "or" => (Infix::Or, "|"),
                 "implies" => (Infix::Implies, "->"),
+                "is" => (Infix::Compare(CompareOp::Eq), "=="),
+                "xor" => (Infix::Compare(CompareOp::Ne), "!="),
                 "iff" => (Infix::Iff, "<->"),
                 "mod" => (Infix::Arith(ArithOp::Mod), "%"),
                 "until" | "u" => (Infix::Temporal(BinaryOp::Until), "U"),

@@ -101,9 +101,19 @@ impl Parser<'_> {
                     self.bump();
                     self.braces = braces;
                 }
+                // Formulas and updates declare nothing.
+                if !matches!(block, Block::Formula | Block::Updates) {
+                    self.skipped_from(self.tokens[start].span);
+                }
                 None
             }
         }
+    }
+
+    /// Notes that what stands from `start` up to here is not in the tree.
+    pub(super) fn skipped_from(&mut self, start: Span) {
+        let skipped = self.since(start);
+        self.skipped.push(skipped);
     }
 
     /// The `;` that ends a member. Where the next member begins all the same, it is only reported.
@@ -121,8 +131,13 @@ impl Parser<'_> {
         }
         let help = match token.tok {
             Tok::Comma if block == Block::Updates => "an update ends with `;`",
-            Tok::Prime => "only the left side of an update has a prime: `x' = x + 1;`",
-            _ => return self.fail(expected),
+            Tok::Prime if block == Block::Updates => {
+                "only the left side of an update has a prime: `x' = x + 1;`"
+            }
+            _ => match self.instead_of_operator() {
+                Some(help) => help,
+                None => return self.fail(expected),
+            },
         };
         self.fail_with(expected, Some(help.to_owned()))
     }

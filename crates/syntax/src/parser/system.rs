@@ -2,7 +2,7 @@
 
 use super::operator::Infix;
 use super::recover::{Block, ITEMS};
-use super::{Abort, Parse, Parser, did_you_mean};
+use super::{Abort, Parse, Parser, did_you_mean, habit};
 use crate::ast::{
     Clause, Expr, Ident, StateDecl, System, SystemItem, SystemKind, Text, Type, Update, UpdateValue,
 };
@@ -96,12 +96,14 @@ impl Parser<'_> {
         {
             self.misplaced()?;
         }
-        let Some(word) = self.keyword(ITEMS) else {
+        let foreign = habit::instead_of_item(start.tok, start.text).is_some();
+        let Some(word) = Some(()).filter(|()| !foreign).and_then(|()| self.keyword(ITEMS)) else {
             let help = match start.tok {
                 Tok::Semi if self.at > 0 => Some("no `;` follows a `}`".to_owned()),
                 Tok::Str => Some("the rows of a map stand before its items".to_owned()),
-                Tok::Ident => did_you_mean(start.text, ITEMS),
-                _ => None,
+                tok => habit::instead_of_item(tok, start.text)
+                    .map(str::to_owned)
+                    .or_else(|| did_you_mean(start.text, ITEMS).filter(|_| tok == Tok::Ident)),
             };
             let expected = "an item of the system (`state`, `action`, `on`, `init`, `label`, ...)";
             return self.fail_with(expected, help);
@@ -203,6 +205,10 @@ impl Parser<'_> {
             return Err(Abort);
         }
         if self.eat(Tok::LBrace).is_some() {
+            if self.peek() == Tok::Number {
+                let help = "a range of integers is written `0..2`, without braces";
+                return self.fail_with("the name of a value", Some(help.to_owned()));
+            }
             let values = self.names("the name of a value")?;
             self.expect(Tok::RBrace, "`,` or `}`")?;
             return Ok(Type::Enum(values));
@@ -212,6 +218,9 @@ impl Parser<'_> {
         }
         let lo = self.arithmetic()?;
         self.expect(Tok::DotDot, "`..` and the upper end of the range")?;
+        if self.peek() == Tok::Dot {
+            return self.fail_with("the upper end of the range", Some("write `0..2`".to_owned()));
+        }
         Ok(Type::Range(lo, self.arithmetic()?))
     }
 
@@ -267,6 +276,11 @@ impl Parser<'_> {
 
     /// `v' = E;`, `v' in {E, ...};` or `v' in LO..HI;`
     fn update(&mut self) -> Parse<Update> {
+        if self.peek() == Tok::If {
+            let help =
+                "a condition stands in front, `on a when C { ... }`, or inside: `x' = if C then A else B;`";
+            return self.fail_with("an update such as `x' = x + 1;`", Some(help.to_owned()));
+        }
         let mut var = self.name("an update such as `x' = x + 1;`")?;
         if let Some(prime) = self.eat(Tok::Prime) {
             var.span = var.span.to(prime.span);
@@ -275,7 +289,17 @@ impl Parser<'_> {
             let help = format!("the next value of `{0}` is written `{0}'`", var.name);
             self.report(Diagnostic::error("missing-prime", var.span, message).with_help(help));
         } else {
-            return self.fail("`'` after the variable");
+            let help = match (self.peek(), self.peek_at(1)) {
+                (Tok::LParen, Tok::Ident) if var.name == "next" => {
+                    Some(format!("the next value of `{0}` is written `{0}'`", self.token_at(1).text))
+                }
+                (Tok::Plus | Tok::Minus, Tok::Assign | Tok::Plus | Tok::Minus) => {
+                    let sign = self.token().text;
+                    Some(format!("write `{0}' = {0} {sign} 1;`", var.name))
+                }
+                _ => None,
+            };
+            return self.fail_with("`'` after the variable", help);
         }
         let value = self.update_value()?;
         self.semicolon(Block::Updates, "the update", "an operator or `;`")?;

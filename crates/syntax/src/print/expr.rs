@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use super::Printer;
 use super::layout::Indent;
+use super::system::quoted;
 use crate::ast::{ArithOp, BinaryOp, CompareOp, Expr, ExprKind, Ident, Interval, Set, UnaryOp};
 use crate::parser::operator::level;
 
@@ -89,6 +90,7 @@ fn level_of(e: &Expr) -> u8 {
         ExprKind::Bool(_)
         | ExprKind::Number(_)
         | ExprKind::Name(_)
+        | ExprKind::Text(_)
         | ExprKind::At(..)
         | ExprKind::Call(..)
         | ExprKind::Tuple(_) => level::OPERAND,
@@ -124,6 +126,7 @@ fn parts<'a>(e: &'a Expr, out: &mut Tasks<'a>) {
     match &e.kind {
         ExprKind::Bool(value) => out.push(text(if *value { "true" } else { "false" })),
         ExprKind::Number(word) | ExprKind::Name(word) => out.push(Task::Text(word.clone().into())),
+        ExprKind::Text(name) => out.push(Task::Text(quoted(name).into())),
         ExprKind::At(name, paths) => out.push(applied(name, "[", paths, "]")),
         ExprKind::Call(name, args) => out.push(applied(name, "(", args, ")")),
         ExprKind::Not(a) => out.extend([text("!"), Task::Expr(a, below_not(a))]),

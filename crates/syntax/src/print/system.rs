@@ -203,6 +203,6 @@ impl Printer<'_> {
 }
 
 /// In quotes, with escapes.
-fn quoted(text: &str) -> String {
+pub(super) fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
 }

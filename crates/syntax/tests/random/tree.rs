@@ -177,11 +177,12 @@ fn expr(random: &mut Random, depth: u32) -> Expr {
 }
 
 fn leaf(random: &mut Random) -> ExprKind {
-    match random.below(6) {
+    match random.below(7) {
         0 => ExprKind::Bool(random.flip()),
         1 => ExprKind::Number(random.one(&["0", "12", "0.5"]).to_owned()),
         2 => ExprKind::At(ident(random), idents(random, 1)),
         3 => ExprKind::Call(ident(random), idents(random, 0)),
+        4 => ExprKind::Text(random.one(&["room A", "17", "say \"hi\"", "back\\slash"]).to_owned()),
         _ => ExprKind::Name(ident(random).name),
     }
 }
