@@ -20,7 +20,7 @@ fn files_that_are_no_problem() {
             ("nowhere.hp", "there is no such file"),
             (text(folder.path()), "it is a directory"),
             (text(&binary), "it is not a text file"),
-            (text(&zeros), "it is not a text file"),
+            (text(&zeros), "this is not a text file"),
             (text(&empty), "empty"),
         ] {
             let run = hyperplan(&[command, file]);

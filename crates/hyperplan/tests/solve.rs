@@ -105,10 +105,19 @@ fn every_quantifier_mode_and_representation() {
 
 #[test]
 fn what_is_not_supported_is_bad_usage() {
-    for states in ["int", "enum"] {
-        let run = hyperplan(&["solve", "rooms.hp", "--objective", "sp", "--states", states]);
+    let unbounded = ["pass/reals.hp", "--objective", "brake"];
+    let numbers = ["rooms.hp", "--objective", "sp", "--states", "int"];
+    let datatypes = ["rooms.hp", "--objective", "sp", "--states", "enum"];
+    let bits = ["pass/reals.hp", "--objective", "brake", "--states", "bitvec"];
+    for (arguments, message) in [
+        (&unbounded[..], "such as --solver z3, cvc5 or yices"),
+        (&numbers, "such as --solver z3, cvc5 or yices"),
+        (&datatypes, "not supported yet"),
+        (&bits, "takes --states int"),
+    ] {
+        let run = hyperplan(&[&["solve"], arguments].concat());
         assert_eq!((run.status, run.stdout.as_str()), (2, ""));
-        assert!(run.stderr.contains("not supported yet"), "{}", run.stderr);
+        assert!(run.stderr.contains(message), "{}", run.stderr);
     }
 }
 
