@@ -11,6 +11,10 @@ pub enum Kind {
     Bool,
     /// `{v0, v1, ...}`
     Enum(usize),
+    /// `int`, of which only `0..n-1` are reached
+    Int(usize),
+    /// `real`, of which only `0, 1/2, ..., (n-1)/2` are reached
+    Real(usize),
 }
 
 impl Kind {
@@ -18,7 +22,7 @@ impl Kind {
     #[must_use]
     pub fn size(self) -> usize {
         match self {
-            Kind::Range(n) | Kind::Enum(n) => n,
+            Kind::Range(n) | Kind::Enum(n) | Kind::Int(n) | Kind::Real(n) => n,
             Kind::Bool => 2,
         }
     }
@@ -27,7 +31,8 @@ impl Kind {
     #[must_use]
     pub fn value(self, value: usize) -> String {
         match self {
-            Kind::Range(_) => value.to_string(),
+            Kind::Range(_) | Kind::Int(_) => value.to_string(),
+            Kind::Real(_) => format!("{value}/2"),
             Kind::Bool => (value == 1).to_string(),
             Kind::Enum(_) => format!("v{value}"),
         }
@@ -272,8 +277,10 @@ impl System {
         if states.is_empty() {
             return "false".into();
         }
-        if let ([(name, Kind::Range(_))], true) = (self.vars.as_slice(), states.len() > 1) {
-            let values: Vec<String> = states.iter().map(usize::to_string).collect();
+        if let ([(name, kind @ (Kind::Range(_) | Kind::Int(_) | Kind::Real(_)))], true) =
+            (self.vars.as_slice(), states.len() > 1)
+        {
+            let values: Vec<String> = states.iter().map(|&state| kind.value(state)).collect();
             return format!("{name} in {{{}}}", values.join(", "));
         }
         states.iter().map(|&s| format!("({})", self.is_state(s))).collect::<Vec<_>>().join(" | ")
@@ -285,6 +292,8 @@ impl Display for System {
         let vars = self.vars.iter().map(|(name, kind)| match kind {
             Kind::Range(n) => format!("{name}: 0..{}", n - 1),
             Kind::Bool => format!("{name}: bool"),
+            Kind::Int(_) => format!("{name}: int"),
+            Kind::Real(_) => format!("{name}: real"),
             Kind::Enum(n) => {
                 format!("{name}: {{{}}}", (0..*n).map(|v| kind.value(v)).collect::<Vec<_>>().join(", "))
             }
@@ -300,6 +309,9 @@ impl Display for System {
                 match values.as_slice() {
                     [] => {}
                     [one] => write!(f, " {name}' = {one};")?,
+                    [first, .., last] if *kind == Kind::Int(kind.size()) && is_run(choices) => {
+                        write!(f, " {name}' in {first}..{last};")?;
+                    }
                     _ => write!(f, " {name}' in {{{}}};", values.join(", "))?,
                 }
             }
@@ -317,6 +329,11 @@ impl Display for System {
         let seen = if self.observe == Observe::First { self.vars[0].0 } else { "l0" };
         writeln!(f, "  observe {seen};\n}}")
     }
+}
+
+/// Whether the choices are successive numbers.
+fn is_run(choices: &Option<Vec<usize>>) -> bool {
+    choices.iter().all(|choices| choices.windows(2).all(|pair| pair[0] + 1 == pair[1]))
 }
 
 impl Display for Problem {
@@ -384,8 +401,8 @@ impl Atom {
                 }
             }
             Atom::Less(i, k, j, v) => {
-                let name = system.vars[*v].0;
-                format!("{name}[{}] + {k} < {name}[{}]", p(i), p(j))
+                let (name, kind) = system.vars[*v];
+                format!("{name}[{}] + {} < {name}[{}]", p(i), kind.value(*k), p(j))
             }
             Atom::SameValue(i, j, v) => {
                 let (name, kind) = system.vars[*v];
@@ -402,8 +419,9 @@ impl Atom {
                 format!("if action[{p}] == {action} then l{yes}[{p}] else l{no}[{p}]")
             }
             Atom::Coded(i, v, a) => {
-                let (p, name, action) = (p(i), system.vars[*v].0, system.actions[*a]);
-                format!("{name}[{p}] == (if action[{p}] == {action} then 1 else 0)")
+                let (p, (name, kind), action) = (p(i), system.vars[*v], system.actions[*a]);
+                let (one, zero) = (kind.value(1), kind.value(0));
+                format!("{name}[{p}] == (if action[{p}] == {action} then {one} else {zero})")
             }
         }
     }

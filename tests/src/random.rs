@@ -105,6 +105,38 @@ pub fn problem_with_semantics(random: &mut Random, semantics: Semantics) -> Prob
     }
 }
 
+/// A problem whose numbers are of types without bounds, though its paths meet finitely many states. Without `within` a
+/// path has as many steps there as the formula reads; where no state is a dead end, that makes no difference.
+#[must_use]
+pub fn unbounded_problem(random: &mut Random) -> Problem {
+    loop {
+        let mut candidate = problem(random);
+        let Problem { system, within, .. } = &mut candidate;
+        let edges = system.edges();
+        let total = (0..system.states()).all(|state| edges.iter().any(|edge| edge.0 == state));
+        if (within.is_none() && !total) || !system.vars.iter().any(|(_, kind)| matches!(kind, Kind::Range(_)))
+        {
+            continue;
+        }
+        for (_, kind) in &mut system.vars {
+            if let Kind::Range(n) = *kind {
+                *kind = if random.once_in(2) { Kind::Int(n) } else { Kind::Real(n) };
+            }
+        }
+        // What is outside would be reached here.
+        let sizes: Vec<usize> = system.vars.iter().map(|(_, kind)| kind.size()).collect();
+        for rule in &mut system.rules {
+            for (choices, size) in rule.choices.iter_mut().zip(&sizes) {
+                choices.iter_mut().for_each(|choices| choices.retain(|c| c < size));
+            }
+        }
+        system.rules.retain(|rule| rule.choices.iter().flatten().all(|choices| !choices.is_empty()));
+        let all = || (0..system.states()).collect();
+        system.init = Some(system.init.clone().unwrap_or_else(all));
+        return candidate;
+    }
+}
+
 /// A problem on a system whose paths all halt within the horizon and never end, that reads no actions and has bounds
 /// for all operators: the infinite path of each prefix is then known.
 #[must_use]

@@ -4,7 +4,7 @@
 //! and the seed that makes it the first one.
 
 use hyperplan_plan::{Config, Error, Outcome, Quantifiers, States, Verdict, solve};
-use hyperplan_problem::{NoFiles, Objective, Overrides, Problem, Strategy, Value, read};
+use hyperplan_problem::{NoFiles, Objective, Overrides, Problem, Rational, Strategy, Value, read};
 use hyperplan_solver::{Deadline, Spec, discover};
 use hyperplan_syntax::SourceMap;
 use hyperplan_tests::brute::{Brute, Path};
@@ -17,6 +17,8 @@ use std::time::Duration;
 
 #[path = "differential/semantics.rs"]
 mod semantics;
+#[path = "differential/unbounded.rs"]
+mod unbounded;
 
 fn number(variable: &str, default: u64) -> u64 {
     match std::env::var(variable) {
@@ -66,7 +68,7 @@ fn path(system: &model::System, objective: &Problem, trace: &hyperplan_problem::
         Value::Bool(b) => usize::from(*b),
         Value::Int(n) => usize::try_from(*n).expect("values are few and small"),
         Value::Enum(i) => usize::try_from(*i).expect("values are few and small"),
-        Value::Real(_) => panic!("no variable is real"),
+        Value::Real(r) => usize::try_from((r * 2).to_integer()).expect("values are few and small"),
     };
     let state = |values: &hyperplan_problem::State| {
         system.state(&values.iter().map(index).collect::<Vec<_>>()).expect("a state of the system")
@@ -130,7 +132,12 @@ fn check_some_strategies(random: &model::Problem, brute: &Brute<'_>, typed: &Pro
 
 fn state(system: &model::System, state: usize) -> hyperplan_problem::State {
     let values = system.values(state).into_iter().zip(&system.vars).map(|(value, (_, kind))| match kind {
-        model::Kind::Range(_) => Value::Int(i64::try_from(value).expect("values are few and small")),
+        model::Kind::Range(_) | model::Kind::Int(_) => {
+            Value::Int(i64::try_from(value).expect("values are few and small"))
+        }
+        model::Kind::Real(_) => {
+            Value::Real(Rational::new(i64::try_from(value).expect("values are few and small"), 2))
+        }
         model::Kind::Bool => Value::Bool(value == 1),
         model::Kind::Enum(_) => Value::Enum(u32::try_from(value).expect("values are few and small")),
     });
@@ -180,7 +187,9 @@ impl Answers {
         let typed = lowered(&text);
         for &quantifiers in ways {
             for states in [States::Onehot, States::Bitvec, States::Int] {
-                if (states, solver) == (States::Int, &Spec::Builtin) {
+                let finite = typed.systems.iter().all(hyperplan_problem::System::is_finite);
+                // The embedded solver has no numbers, and what is not finite is nothing else.
+                if (states == States::Int && *solver == Spec::Builtin) || (states != States::Int && !finite) {
                     continue;
                 }
                 match answer(&typed, &typed.objectives[0], solver, quantifiers, states) {

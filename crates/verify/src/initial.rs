@@ -1,25 +1,23 @@
 //! Initial states: all assignments that satisfy `init`, found variable by variable.
 
+use crate::domain::{Domain, domain_by_init};
 use crate::eval::{eval, truth};
 use crate::graph::{Graph, StateId, integers, no_value};
 use crate::report::Stop;
-use hyperplan_problem::{Comparison, Expr, LabelId, Leaf, Type, Value, VarId};
-use rustc_hash::{FxHashMap, FxHashSet};
+use hyperplan_problem::{LabelId, Leaf, Type, Value};
 use typed_index_collections::TiVec;
 
 impl Graph<'_> {
     /// All initial states, in the order of their values.
     pub(crate) fn initial_states(&mut self) -> Result<Vec<StateId>, Stop> {
         let mut domains = Vec::with_capacity(self.system.vars.len());
-        let (fixed, bounded) = self.plain_bounds();
         for (id, var) in self.system.vars.iter_enumerated() {
+            let Domain { values, lo: least, hi: most } = domain_by_init(self.system, id);
             let range = |lo: i64, hi: i64| {
-                let (least, most) = bounded.get(&id).copied().unwrap_or((i64::MIN, i64::MAX));
-                integers(lo.max(least), hi.min(most), self.limit)
+                integers(lo.max(least.unwrap_or(lo)), hi.min(most.unwrap_or(hi)), self.limit)
             };
-            let domain = match (fixed.get(&id), &var.ty) {
-                (Some(&value), ty) if ty.contains(value) => vec![value],
-                (Some(_), _) => Vec::new(),
+            let domain = match (values, &var.ty) {
+                (Some(values), ty) => values.into_iter().filter(|value| ty.contains(*value)).collect(),
                 (None, Type::Bool) => vec![Value::Bool(false), Value::Bool(true)],
                 (None, Type::Range { lo, hi }) => range(*lo, *hi)?,
                 (None, Type::Int) => range(i64::MIN, i64::MAX)?,
@@ -85,39 +83,5 @@ impl Graph<'_> {
             labels.push(value);
         }
         truth(&self.system.init, &|l| leaf(&labels, l))
-    }
-
-    /// What `init` says of single variables: values that they equal, and ranges of integers, so that large types
-    /// need not be enumerated.
-    fn plain_bounds(&self) -> (FxHashMap<VarId, Value>, FxHashMap<VarId, (i64, i64)>) {
-        let mut fixed = FxHashMap::default();
-        let mut bounded: FxHashMap<VarId, (i64, i64)> = FxHashMap::default();
-        let mut seen = FxHashSet::default();
-        let mut conjuncts = vec![&self.system.init];
-        while let Some(e) = conjuncts.pop() {
-            match e {
-                Expr::And(es) => conjuncts.extend(es),
-                Expr::Leaf(Leaf::Label(l)) if seen.insert(*l) => {
-                    conjuncts.extend(self.system.labels.get(*l).map(|l| &l.expr))
-                }
-                Expr::Compare(op, a, b) => match (op, &**a, &**b) {
-                    (Comparison::Eq, Expr::Leaf(Leaf::Var(v)), Expr::Const(c))
-                    | (Comparison::Eq, Expr::Const(c), Expr::Leaf(Leaf::Var(v))) => {
-                        fixed.insert(*v, *c);
-                    }
-                    (op, Expr::Const(Value::Int(c)), Expr::Leaf(Leaf::Var(v))) => {
-                        let range = bounded.entry(*v).or_insert((i64::MIN, i64::MAX));
-                        range.0 = range.0.max(c + i64::from(*op == Comparison::Lt));
-                    }
-                    (op, Expr::Leaf(Leaf::Var(v)), Expr::Const(Value::Int(c))) => {
-                        let range = bounded.entry(*v).or_insert((i64::MIN, i64::MAX));
-                        range.1 = range.1.min(c - i64::from(*op == Comparison::Lt));
-                    }
-                    _ => {}
-                },
-                _ => {}
-            }
-        }
-        (fixed, bounded)
     }
 }

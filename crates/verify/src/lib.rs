@@ -13,6 +13,10 @@
 //!   last state has a path of K - t more steps. Positions are 0 to K; operators read that finite trace:
 //!   X, F, U are strong (they demand a position that exists), N, G, W, R are weak.
 //!
+//! In a system with infinitely many states it cannot be told which of them are live: without `within`, a path has
+//! exactly as many steps there as the formula can read of it. Such systems are explored like others, as far as finitely
+//! many states are met; where not (starts without bounds, any real number between two), the check is too large.
+//!
 //! `phi U[a,b] psi` holds at i if psi holds at some position j of i+a..=i+b and phi at all of i..j; `R[a,b]` is its
 //! dual; `F`, `G` are `true U` and `false R`; `phi W[a,b] psi` is `(phi U[a,b] psi) | G[0,b] phi`.
 //!
@@ -46,6 +50,7 @@
 
 mod atoms;
 mod check;
+mod domain;
 mod eval;
 mod graph;
 mod horizon;

@@ -228,7 +228,7 @@ impl Dialogue {
                     Meaning::Answer(Some(false)) => return Ok(Some(Answer::Unsat)),
                     Meaning::Answer(None) => return Ok(Some(Answer::Unknown(self.reason(running)))),
                     Meaning::Timeout => return Ok(Some(Answer::Unknown("timeout".to_owned()))),
-                    Meaning::Error(message) => return Err(Error::Reported { name: self.name(), message }),
+                    Meaning::Error(message) => return Err(reported(self.name(), message)),
                     Meaning::Other => return Err(self.misunderstood(running, "check-sat", reply.text())),
                 },
             }
@@ -277,7 +277,7 @@ impl Dialogue {
                 Next::Ended => return Err(self.crashed(running, "")),
                 Next::Reply(reply) => match reply::meaning(&reply) {
                     Meaning::Noise => {}
-                    Meaning::Error(message) => return Err(Error::Reported { name: self.name(), message }),
+                    Meaning::Error(message) => return Err(reported(self.name(), message)),
                     _ => break reply,
                 },
             }
@@ -370,4 +370,14 @@ fn last_words(said: &str, errors: &str) -> String {
     let words = words.collect::<Vec<_>>().join(" / ");
     let skip = words.chars().count().saturating_sub(LONGEST);
     words.chars().skip(skip).collect()
+}
+
+/// An error that a solver reported. One that knows no such logic did nothing wrong.
+fn reported(name: String, message: String) -> Error {
+    let lower = message.to_lowercase();
+    let unknown = ["not supported", "unsupported", "unknown logic"].iter().any(|words| lower.contains(words));
+    if lower.contains("logic") && unknown {
+        return Error::Unsupported { what: format!("solver {name} cannot take this query: {message}") };
+    }
+    Error::Reported { name, message }
 }
