@@ -4,7 +4,7 @@
 //!
 //! | info string | what is done |
 //! | --- | --- |
-//! | `hp` | a whole problem: `check` accepts it, and `solve` agrees with its comments `// OBJECTIVE: VERDICT` at ends of lines, one for each objective |
+//! | `hp` | a whole problem: `check` accepts it, and `solve` agrees with its comments `// OBJECTIVE: VERDICT` at ends of lines, one for each objective (or `VERDICT by SOLVERS`) |
 //! | `hp refused CODE` | a whole problem: `check` refuses it with that error |
 //! | `hp in NAME` | a fragment: it takes the place of the line `...` in the context of that name, and the result is treated like a whole problem |
 //! | `hp in NAME each` | the same for each line of the block by itself |
@@ -150,16 +150,27 @@ fn holds(folder: &Path, file: &str, text: &str) -> Result<(), String> {
     let objectives = text.lines().filter_map(|line| line.trim().strip_prefix("objective "));
     for objective in objectives {
         let name: String = objective.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
-        let said =
-            |verdict| text.lines().any(|line| line.trim_end().ends_with(&format!("// {name}: {verdict}")));
-        let (verdict, status) = match (said("realizable"), said("unrealizable")) {
-            (true, false) => ("realizable", 0),
-            (false, true) => ("unrealizable", 1),
-            _ => return Err(format!("no line ends with `// {name}: VERDICT`, or several do")),
+        let mark = format!("// {name}: ");
+        let mut said = text.lines().filter_map(|line| Some(line.trim_end().split_once(&mark)?.1));
+        let (Some(answer), None) = (said.next(), said.next()) else {
+            return Err(format!("no line ends with `// {name}: VERDICT`, or several do"));
         };
-        let run = hyperplan(folder, &["solve", "--quiet", "--objective", &name, file]);
-        if run.status != status || run.stdout.trim_end() != format!("{name}: {verdict}") {
-            return Err(format!("expected {verdict}, found {} ({})\n{}", run.stdout, run.status, run.stderr));
+        let (verdict, solvers) = answer.split_once(" by ").unwrap_or((answer, "builtin"));
+        let status = match verdict {
+            "realizable" => 0,
+            "unrealizable" => 1,
+            other => return Err(format!("`{other}` is no verdict")),
+        };
+        for solver in solvers.split(", ") {
+            let run =
+                hyperplan(folder, &["solve", "--quiet", "--objective", &name, "--solver", solver, file]);
+            let required = std::env::var_os("HYPERPLAN_REQUIRE_SOLVERS").is_some();
+            if run.status == 4 && run.stderr.contains("not found") && !required {
+                eprintln!("{solver} is missing: skipped");
+            } else if run.status != status || run.stdout.trim_end() != format!("{name}: {verdict}") {
+                let (found, status, messages) = (run.stdout, run.status, run.stderr);
+                return Err(format!("expected {verdict}, {solver} found {found} ({status})\n{messages}"));
+            }
         }
     }
     Ok(())
