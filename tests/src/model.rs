@@ -212,7 +212,7 @@ pub struct Problem {
 }
 
 /// Names of path variables.
-pub const PATHS: [&str; 3] = ["p", "q", "r"];
+pub const PATHS: [&str; 4] = ["p", "q", "r", "s2"];
 
 impl System {
     /// Number of states.

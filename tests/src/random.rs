@@ -58,9 +58,13 @@ pub fn problem(random: &mut Random) -> Problem {
 
 fn attempt(random: &mut Random) -> Problem {
     let system = system(random);
-    let paths = 1 + random.below(3);
-    let exists: Vec<bool> = (0..paths).map(|_| random.once_in(2)).collect();
-    let horizon = if paths == 3 { 1 + random.bound(3) } else { 1 + random.bound(4) };
+    // Four paths are there for three alternations of quantifiers.
+    let paths = if random.once_in(8) { 4 } else { 1 + random.below(3) };
+    let first = random.once_in(2);
+    let exists: Vec<bool> = (0..paths)
+        .map(|path| if paths == 4 { first == (path % 2 == 0) } else { random.once_in(2) })
+        .collect();
+    let horizon = 1 + random.bound([4, 4, 3, 2][paths - 1]);
     let within = random.once_in(2).then(|| horizon - random.bound(2));
     let depth = 2 + random.below(3);
     let mut formulas = Formulas { random, system: &system, paths, within: within.is_some() };
@@ -171,15 +175,27 @@ pub fn halting_problem(random: &mut Random) -> Problem {
     Problem { system, exists, within: None, semantics: None, look, formula }
 }
 
-/// The shape of robustness: a path does something, and another that takes the same actions does something too.
+/// The shape of robustness: a path does something, and another that takes the same actions, or two, do something too.
 fn tied(random: &mut Random, system: &System, paths: usize, horizon: u32) -> Formula {
     let last = paths - 1;
     let mut own = |path: usize| {
         let formulas = Formulas { random: &mut *random, system, paths: 1, within: false };
         Own { path, formulas }.formula(horizon)
     };
-    let (mine, theirs) = (own(0), own(last));
-    let same = Formula::Globally(Some((0, horizon)), Box::new(Formula::Atom(Atom::SameAction(0, last))));
+    let (mine, mut theirs) = (own(0), own(last));
+    let between = (last > 1).then(|| own(1));
+    let follows =
+        |path| Formula::Globally(Some((0, horizon)), Box::new(Formula::Atom(Atom::SameAction(0, path))));
+    let mut same = follows(last);
+    // Two that follow at once.
+    if let Some(between) = between.filter(|_| random.once_in(2)) {
+        same = Formula::And(vec![follows(1), same]);
+        theirs = if random.once_in(2) {
+            Formula::Or(vec![between, theirs])
+        } else {
+            Formula::And(vec![between, theirs])
+        };
+    }
     let formula = Formula::And(vec![mine, Formula::Implies(Box::new(same), Box::new(theirs))]);
     if random.once_in(4) { Formula::Not(Box::new(formula)) } else { formula }
 }
