@@ -16,5 +16,7 @@ mod transcript;
 
 pub use deadline::Deadline;
 pub use error::Error;
+#[doc(hidden)]
+pub use external::understand_output;
 pub use external::{Found, discover};
 pub use session::{Answer, Identity, Options, Session, Spec, open};

@@ -1,11 +1,11 @@
-//! What solvers say: splitting their output into replies, and reading those with rsmt2.
+//! What solvers say: splitting their output into replies, and reading those.
 
 use std::collections::VecDeque;
-use std::io::BufRead;
 
 use hyperplan_smt::{Rational, Sort, Value};
-use rsmt2::SmtRes;
-use rsmt2::parse::{ExprParser, SmtParser, ValueParser};
+use rsmt2::parse::SmtParser;
+
+use super::sexpr::parts;
 
 /// A reply: a line that does not begin with a parenthesis, or a whole s-expression.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -198,13 +198,16 @@ fn error_message(text: &str) -> String {
     inner.trim_end_matches(')').trim().trim_matches('"').trim().to_owned()
 }
 
-/// The values in the reply to `get-value`, in order.
+/// The values in the reply to `get-value`, in order: it is a list of pairs of a symbol, which does not matter here, and
+/// its value. rsmt2 is not asked, since it counts bytes where it means characters, and panics where a parenthesis is
+/// too many.
 pub(super) fn values(reply: &Reply) -> Option<Vec<Value>> {
     let Reply::Expression(text) = reply else { return None };
-    // rsmt2 counts bytes where it means characters; the symbols' names do not matter here.
-    let text: String = text.chars().map(|c| if c.is_ascii() { c } else { '?' }).collect();
-    let pairs = SmtParser::of_str(&text).get_values(Pair, ()).ok()?;
-    Some(pairs.into_iter().map(|((), value)| value).collect())
+    let pairs = parts(text)?.into_iter().map(|pair| match parts(pair)?.as_slice() {
+        [_, text] => value(text),
+        _ => None,
+    });
+    pairs.collect()
 }
 
 /// The reason in the reply to `(get-info :reason-unknown)`.
@@ -213,23 +216,6 @@ pub(super) fn reason(reply: &Reply) -> Option<String> {
     let inner = text.strip_prefix('(')?.strip_suffix(')')?.trim();
     let reason = inner.strip_prefix(":reason-unknown")?.trim().trim_matches('"').trim();
     Some(reason.trim_start_matches('(').trim_end_matches(')').to_owned())
-}
-
-/// Reads pairs of a symbol, which is skipped, and its value.
-#[derive(Copy, Clone)]
-struct Pair;
-
-impl<'a, R: BufRead> ExprParser<(), (), &'a mut SmtParser<R>> for Pair {
-    fn parse_expr(self, input: &'a mut SmtParser<R>, (): ()) -> SmtRes<()> {
-        input.get_sexpr().map(|_| ())
-    }
-}
-
-impl<'a, R: BufRead> ValueParser<Value, &'a mut SmtParser<R>> for Pair {
-    fn parse_value(self, input: &'a mut SmtParser<R>) -> SmtRes<Value> {
-        let text = input.get_sexpr()?;
-        value(text).ok_or_else(|| format!("not a value: {text}").into())
-    }
 }
 
 /// A value in any notation.
@@ -241,19 +227,27 @@ fn value(text: &str) -> Option<Value> {
     }
     if let Some(digits) = text.strip_prefix("#b") {
         let bits = u128::from_str_radix(digits, 2).ok()?;
-        return Some(Value::Bv { width: u32::try_from(digits.len()).ok()?, bits });
+        return vector(u32::try_from(digits.len()).ok()?, bits);
     }
     if let Some(digits) = text.strip_prefix("#x") {
         let bits = u128::from_str_radix(digits, 16).ok()?;
-        return Some(Value::Bv { width: u32::try_from(digits.len()).ok()?.checked_mul(4)?, bits });
+        return vector(u32::try_from(digits.len()).ok()?.checked_mul(4)?, bits);
     }
     let spaced = text.replace('(', " ( ").replace(')', " ) ");
     let tokens: Vec<&str> = spaced.split_whitespace().collect();
     if let ["(", "_", constant, width, ")"] = tokens[..] {
         let bits = constant.strip_prefix("bv")?.parse().ok()?;
-        return Some(Value::Bv { width: width.parse().ok()?, bits });
+        return vector(width.parse().ok()?, bits);
     }
-    number(&tokens)
+    // The longest has two signs: `(- (/ (- 1) (- 3)))`.
+    if tokens.len() > 20 { None } else { number(&tokens) }
+}
+
+/// A bit-vector, unless the bits are more than the width.
+fn vector(width: u32, bits: u128) -> Option<Value> {
+    let vector = Value::Bv { width, bits };
+    let fits = (1..=128).contains(&width) && bits.leading_zeros() >= 128 - width;
+    fits.then_some(vector)
 }
 
 /// An integer or rational: digits, a decimal, and at most a few levels of `-` and `/`.
@@ -298,6 +292,25 @@ pub(super) fn of_sort(value: Value, sort: Sort) -> Option<Value> {
         (Value::Real(r), Sort::Int) if r.denominator() == 1 => Some(Value::Int(r.numerator())),
         _ => (value.sort() == sort).then_some(value),
     }
+}
+
+/// What is understood of output that comes in pieces of so many bytes, reply by reply. For tests that try strange
+/// outputs; no part of the interface.
+#[doc(hidden)]
+#[must_use]
+pub fn understand_output(output: &[u8], piece: usize) -> Vec<String> {
+    let mut splitter = Splitter::default();
+    output.chunks(piece.max(1)).for_each(|piece| splitter.feed(piece));
+    splitter.finish();
+    let describe = |reply: Reply| {
+        let (meaning, reason, values) = (meaning(&reply), reason(&reply), values(&reply));
+        let all_of = |sort| -> Option<Vec<Value>> {
+            values.iter().flatten().map(|value| of_sort(*value, sort)).collect()
+        };
+        let (integers, reals) = (all_of(Sort::Int), all_of(Sort::Real));
+        format!("{reply:?}: {meaning:?}, {reason:?}, {values:?}, {integers:?}, {reals:?}")
+    };
+    std::iter::from_fn(|| splitter.next()).map(describe).collect()
 }
 
 #[cfg(test)]
@@ -355,6 +368,16 @@ mod tests {
         assert_eq!(of("((x (lambda (y) y)))"), None);
         assert_eq!(of("(error \"bad\")"), None);
         assert_eq!(of("((x (/ 1 0)))"), None);
+        for damaged in
+            ["(x) 1", "((x 1)", "((x 1 2))", "((x))", "(x 1)", "((a) b) c)", "((x (- 1)) (y)) (z 1))"]
+        {
+            assert_eq!(of(damaged), None, "{damaged}");
+        }
+        assert_eq!(of("((x (_ bv5 2)))"), None);
+        assert_eq!(of("((x (_ bv5 129)))"), None);
+        assert_eq!(of("((x (_ bv0 0)))"), None);
+        let deep = format!("((x {}1{}))", "(- ".repeat(200_000), ")".repeat(200_000));
+        assert_eq!(of(&deep), None);
         assert_eq!(of_sort(Value::Int(2), Sort::Real), Some(fraction(2, 1)));
         assert_eq!(of_sort(Value::Int(2), Sort::Bool), None);
     }
