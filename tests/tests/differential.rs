@@ -1,7 +1,8 @@
 //! The checker and the planner against brute force, on random problems.
 //!
-//! `HYPERPLAN_SEED` and `HYPERPLAN_CASES` replace the seed and the number of problems; a failure prints the problem
-//! and the seed that makes it the first one.
+//! `HYPERPLAN_SEED` and `HYPERPLAN_CASES` replace the seed and the number of problems, and `HYPERPLAN_FUZZ_SECONDS` that
+//! number by a time; a failure prints the problem, ready to be put among the fixtures, and the seed that makes it the
+//! first one.
 
 use hyperplan_plan::{Config, Error, Outcome, Quantifiers, States, Verdict, solve};
 use hyperplan_problem::{NoFiles, Objective, Overrides, Problem, Rational, Strategy, Value, read};
@@ -10,29 +11,33 @@ use hyperplan_syntax::SourceMap;
 use hyperplan_tests::brute::{Brute, Path};
 use hyperplan_tests::model;
 use hyperplan_tests::random::{Random, problem};
-use hyperplan_tests::say;
+use hyperplan_tests::{deadline, number, say};
 use hyperplan_verify::{Budget, check, decide};
 use std::str::FromStr;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 #[path = "differential/semantics.rs"]
 mod semantics;
 #[path = "differential/unbounded.rs"]
 mod unbounded;
 
-fn number(variable: &str, default: u64) -> u64 {
-    match std::env::var(variable) {
-        Ok(text) => text.parse().unwrap_or_else(|_| panic!("{variable} must be a number, not {text:?}")),
-        Err(_) => default,
-    }
-}
-
 /// The seeds of the random problems, one each.
 fn seeds(cases: u64) -> impl Iterator<Item = u64> {
     let first = number("HYPERPLAN_SEED", 20_260_101);
-    let cases = number("HYPERPLAN_CASES", cases);
-    say(&format!("seed {first}, {cases} cases"));
-    (0..cases).map(move |i| first.wrapping_add(i))
+    let end = deadline();
+    let cases = number("HYPERPLAN_CASES", if end.is_some() { u64::MAX } else { cases });
+    match end {
+        Some(_) => say(&format!("seed {first}, as many cases as there is time for")),
+        None => say(&format!("seed {first}, {cases} cases")),
+    }
+    let in_time = move |_: &u64| end.is_none_or(|end| Instant::now() < end);
+    (0..cases).map(move |i| first.wrapping_add(i)).take_while(in_time)
+}
+
+/// The problem as a fixture: with a comment that says how it has to be answered.
+fn fixture(text: &str, expected: bool) -> String {
+    let verdict = if expected { "realizable" } else { "unrealizable" };
+    text.replacen("objective o", &format!("// o: {verdict}\nobjective o"), 1)
 }
 
 fn lowered(text: &str) -> Problem {
@@ -88,9 +93,9 @@ fn the_checker_decides_as_brute_force_does() {
     let mut tally = Tally::default();
     for seed in seeds(4000) {
         let random = problem(&mut Random::new(seed));
-        let text = random.to_string();
         let brute = Brute::new(&random, usize::MAX / 8).expect("no limit");
         let expected = brute.verdict();
+        let text = fixture(&random.to_string(), expected);
         tally.add(expected);
         let typed = lowered(&text);
         let objective = &typed.objectives[0];
@@ -181,9 +186,9 @@ struct Answers {
 impl Answers {
     /// Compares all ways to solve a problem by one solver with brute force.
     fn compare(&mut self, random: &model::Problem, solver: &Spec, ways: &[Quantifiers], seed: u64) {
-        let text = random.to_string();
         let brute = Brute::new(random, usize::MAX / 8).expect("no limit");
         let expected = brute.verdict();
+        let text = fixture(&random.to_string(), expected);
         let typed = lowered(&text);
         for &quantifiers in ways {
             for states in [States::Onehot, States::Bitvec, States::Int] {

@@ -3,7 +3,7 @@
 use super::Random;
 
 /// Pieces to put in: what the grammar turns on, and what it does not know.
-const PIECES: &[&str] = &[
+pub const PIECES: &[&str] = &[
     "(",
     ")",
     "[",
@@ -72,22 +72,22 @@ const PIECES: &[&str] = &[
     "TRUE",
 ];
 
-/// `text`, damaged a few times; `other` gives pieces.
-pub fn damaged(random: &mut Random, text: &str, other: &str) -> String {
+/// `text`, damaged a few times, with parts of `other` and `pieces`.
+pub fn damaged(random: &mut Random, text: &str, other: &str, pieces: &[&str]) -> String {
     let mut text = text.to_owned();
     for _ in 0..=random.below(3) {
         let (start, end) = range(random, &text);
         match random.below(6) {
             0 => text.replace_range(start..end, ""),
             1 => {
-                let piece = random.one(PIECES);
+                let piece = random.one(pieces);
                 text.insert_str(start, piece);
             }
             2 => {
                 let (from, to) = range(random, other);
                 text.insert_str(start, &other[from..to]);
             }
-            3 => text.replace_range(start..end, random.one(PIECES)),
+            3 => text.replace_range(start..end, random.one(pieces)),
             4 => {
                 let again = text[start..end].to_owned();
                 text.insert_str(end, &again);

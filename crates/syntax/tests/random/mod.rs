@@ -1,8 +1,9 @@
-//! Random trees and damaged texts, the same for the same seed everywhere. Nothing here knows the test harness, so that
-//! a fuzzer's target can include the folder as it is.
+//! Random trees and damaged texts, the same for the same seed everywhere, and what has to hold of them. Nothing here
+//! knows the test harness: the crate with the bodies of the fuzzers includes the folder as it is.
 #![allow(unreachable_pub, reason = "included by several tests")]
 
 pub mod damage;
+pub mod roundtrip;
 pub mod tree;
 
 /// A reproducible source of numbers (SplitMix64).

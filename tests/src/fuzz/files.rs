@@ -1,0 +1,235 @@
+//! The files that problems name, and strategies.
+
+use super::problem::lowered;
+use hyperplan_problem::answer::{StrategyFile, to_strategy, to_witness};
+use hyperplan_problem::{Lowered, Map, Problem};
+use hyperplan_verify::{Budget, check};
+use std::sync::OnceLock;
+
+/// Pieces of maps.
+pub(super) const MAP_PIECES: &[&str] = &[
+    "\n",
+    "\r\n",
+    "\r",
+    " ",
+    "\t",
+    "\0",
+    "é",
+    "\u{feff}",
+    ".",
+    "#",
+    "@",
+    "S",
+    "G",
+    "W",
+    "T",
+    "O",
+    "x",
+    "type octile\n",
+    "height 2\n",
+    "width 3\n",
+    "width ",
+    "height ",
+    "map\n",
+    "map",
+    "0",
+    "99999999999999999999",
+    "-1",
+    "....\n",
+];
+
+/// Pieces of the descriptions of ROS maps.
+pub(super) const ROS_PIECES: &[&str] = &[
+    "\n",
+    "\r\n",
+    ":",
+    ": ",
+    " #",
+    "\"",
+    "'",
+    "/",
+    "../",
+    "image: ",
+    "image: room.pgm\n",
+    "negate: 1\n",
+    "negate: ",
+    "mode: trinary\n",
+    "mode: scale\n",
+    "occupied_thresh: ",
+    "free_thresh: ",
+    "nan",
+    "inf",
+    "-1",
+    "1e400",
+    "0.5",
+    "resolution: 0.05\n",
+    "origin: [0, 0, 0]\n",
+    "---\n",
+    "é",
+    "\0",
+];
+
+/// Pieces of pictures.
+pub(super) const PGM_PIECES: &[&str] = &[
+    "P2",
+    "P5",
+    "P6",
+    "\n",
+    " ",
+    "# c\n",
+    "#",
+    "0",
+    "1",
+    "255",
+    "256",
+    "65535",
+    "65536",
+    "4294967296",
+    "2000000",
+    "\0",
+    "\u{7f}",
+    "3 2\n",
+];
+
+/// Pieces of graphs and strategies.
+pub(super) const JSON_PIECES: &[&str] = &[
+    "{",
+    "}",
+    "[",
+    "]",
+    "[[",
+    "]]",
+    "\"",
+    ":",
+    ",",
+    "\\",
+    "\\u0000",
+    "\\ud800",
+    "\n",
+    " ",
+    "\0",
+    "é",
+    "null",
+    "true",
+    "false",
+    "0",
+    "1",
+    "-",
+    "17",
+    "1.5",
+    "1e999",
+    "99999999999999999999",
+    "\"1/3\"",
+    "\"states\": []",
+    "\"n1\"",
+    "\"actions\"",
+    "\"transitions\"",
+    "\"initial\"",
+    "\"labels\"",
+    "\"none\"",
+    "\"path\"",
+    "\"witness\"",
+    "\"p\"",
+    "\"system\": \"World\",",
+    "\"node\": \"n2\"",
+    "\"crash\": true",
+    "{}",
+    "[]",
+];
+
+/// A problem on a system that is read from a file, and what it means.
+fn on_file(system: &str, files: &dyn Fn(&str) -> Result<Vec<u8>, String>) -> Lowered {
+    let objective = "objective o { exists p, q. F[0,2] state[p] != state[q] }";
+    lowered(&format!("system World = {system}\n{objective}"), files)
+}
+
+/// What must hold of every map.
+fn sound(map: &Map) {
+    assert!(map.obstacles.is_sorted_by(|a, b| a < b), "obstacles are sorted, each listed once");
+    assert!(map.obstacles.iter().all(|&(x, y)| x < map.width && y < map.height), "obstacles are on the map");
+    assert!(map.obstacles.len() < map.width as usize * map.height as usize, "some cell is free");
+}
+
+fn map_of(lowered: &Lowered) -> Option<&Map> {
+    if lowered.has_errors() {
+        return None;
+    }
+    let map =
+        lowered.problem.systems[hyperplan_problem::SystemId(0)].map.as_ref().expect("the system is a map");
+    sound(map);
+    Some(map)
+}
+
+/// A map's text. No obstacle is lost, and none is made up.
+pub(super) fn map(data: &[u8]) {
+    let items = "legend 'W' = water; legend 'x' = #; obstacle crash; edge stay; absorb !water;";
+    let lowered = on_file(&format!("grid(\"m.txt\") {{ {items} }}"), &|_| Ok(data.to_vec()));
+    let Some(map) = map_of(&lowered) else { return };
+    let text = String::from_utf8_lossy(data);
+    let is_benchmark = text.lines().next().is_some_and(|line| line.split_whitespace().next() == Some("type"));
+    let (letters, rows) = match text.split_once("map") {
+        Some((_, rows)) if is_benchmark => ("x@OT", rows),
+        _ => ("x#@", text.as_ref()),
+    };
+    let count = rows.chars().filter(|letter| letters.contains(*letter)).count();
+    assert_eq!(count, map.obstacles.len(), "the number of obstacles");
+}
+
+/// The description of a ROS map, whose picture is a good one.
+pub(super) fn ros(data: &[u8]) {
+    let picture = include_bytes!("../../corpus/pgm/raw");
+    let files = |path: &str| {
+        let is_yaml = path == "m.yaml";
+        Ok(if is_yaml { data.to_vec() } else { picture.to_vec() })
+    };
+    map_of(&on_file("grid(\"m.yaml\") { moves up_left, down, stay; }", &files));
+}
+
+/// The picture of a ROS map.
+pub(super) fn pgm(data: &[u8]) {
+    let yaml = b"image: m.pgm\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+    let files = |path: &str| {
+        let is_yaml = path == "m.yaml";
+        Ok(if is_yaml { yaml.to_vec() } else { data.to_vec() })
+    };
+    map_of(&on_file("grid(\"m.yaml\");", &files));
+}
+
+/// A graph.
+pub(super) fn graph(data: &[u8]) {
+    let lowered = on_file("graph(\"g.json\");", &|_| Ok(data.to_vec()));
+    if lowered.has_errors() {
+        return;
+    }
+    let system = &lowered.problem.systems[hyperplan_problem::SystemId(0)];
+    assert!(system.edges.is_some() && system.vars.len() == 1 && !system.actions.is_empty());
+}
+
+/// A strategy: what fits the problem survives being written and read again, and the checker can judge it.
+pub(super) fn strategy(data: &[u8]) {
+    let Ok(text) = str::from_utf8(data) else { return };
+    let Ok(files) = StrategyFile::read_all(text) else { return };
+    let problem = problem();
+    for objective in &problem.objectives {
+        for witness in files.iter().filter_map(|file| file.witness.as_deref()) {
+            let Ok(strategy) = to_strategy(problem, objective, witness) else { continue };
+            let written = to_witness(problem, objective, &strategy);
+            let json = serde_json::json!({ "witness": written }).to_string();
+            let again = StrategyFile::read_all(&json).expect("what was written can be read");
+            let again = again[0].witness.as_deref().expect("it was written");
+            assert_eq!(to_strategy(problem, objective, again), Ok(strategy.clone()));
+            // Any verdict will do, and so will a refusal.
+            let _ = check(problem, objective, &strategy, &Budget::default());
+        }
+    }
+}
+
+/// A problem with variables of all finite types.
+fn problem() -> &'static Problem {
+    static PROBLEM: OnceLock<Problem> = OnceLock::new();
+    PROBLEM.get_or_init(|| {
+        let graph = include_bytes!("../../corpus/graph/roadmap");
+        let text = include_str!("../../corpus/strategies.hp");
+        lowered(text, &|_| Ok(graph.to_vec())).problem
+    })
+}

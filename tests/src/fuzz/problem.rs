@@ -1,0 +1,72 @@
+//! Problem files.
+
+use super::text::roundtrip::{formatted, without_places};
+use super::text::{Random, tree};
+use hyperplan_problem::{Lowered, Overrides, display, read};
+use hyperplan_syntax::{Diagnostic, SourceId, SourceMap, parse, print, render, to_json};
+
+/// Reads a problem; what has no errors is formatted, and means the same afterwards.
+pub(super) fn body(data: &[u8]) {
+    let Ok(text) = str::from_utf8(data) else { return };
+    let lowered = lowered(text, &file);
+    let (tree, errors) = parse(SourceId(0), text);
+    if errors.iter().any(Diagnostic::is_error) {
+        assert!(lowered.has_errors(), "errors are lost: {errors:#?}");
+        return;
+    }
+    let again = self::lowered(&formatted(&tree, text), &file);
+    let words = |lowered: &Lowered| {
+        let all = lowered.diagnostics.iter().map(|d| (d.severity, d.code, d.message.clone()));
+        all.collect::<Vec<_>>()
+    };
+    assert_eq!(words(&again), words(&lowered), "formatted, it has other faults");
+    assert!(
+        without_places(&again.problem) == without_places(&lowered.problem),
+        "formatted, it means another"
+    );
+}
+
+/// A text that the parser accepts, though it means little.
+pub(super) fn random(random: &mut Random) -> String {
+    print(&tree::file(random), "")
+}
+
+/// What a problem text means; its messages are right about places, and can be shown. `files` has what it names.
+pub(super) fn lowered(text: &str, files: &dyn Fn(&str) -> Result<Vec<u8>, String>) -> Lowered {
+    let mut sources = SourceMap::new();
+    let lowered = read(&mut sources, "fuzz.hp", text, &files, &Overrides::default());
+    let all: Vec<Diagnostic> = lowered.diagnostics.iter().chain(&lowered.unused).cloned().collect();
+    for diagnostic in &all {
+        let related = diagnostic.related.iter().map(|(span, _)| span);
+        for span in diagnostic.span.iter().chain(related) {
+            let source = sources.get(span.source);
+            assert!(source.text.get(span.range()).is_some(), "a place outside of its text: {diagnostic:?}");
+        }
+        let json = to_json(&sources, "fuzz.hp", diagnostic);
+        assert_eq!(json.message, diagnostic.message);
+    }
+    for (color, width) in [(false, 100), (true, 20)] {
+        let shown = render(&sources, &all, color, width);
+        assert_eq!(shown.is_empty(), all.is_empty());
+    }
+    if !lowered.has_errors() {
+        for objective in &lowered.problem.objectives {
+            assert!(!display::objective(&lowered.problem, objective).is_empty());
+        }
+    }
+    lowered
+}
+
+/// The files that problems name: what is in one depends on how its name ends.
+fn file(path: &str) -> Result<Vec<u8>, String> {
+    let ending = path.rsplit('.').next().unwrap_or_default();
+    let bytes: &[u8] = match ending {
+        "json" => include_bytes!("../../corpus/graph/roadmap"),
+        "map" => include_bytes!("../../corpus/map/benchmark"),
+        "yaml" => include_bytes!("../../corpus/ros/room"),
+        "pgm" => include_bytes!("../../corpus/pgm/raw"),
+        "txt" => include_bytes!("../../corpus/map/small"),
+        _ => return Err("there is no such file".into()),
+    };
+    Ok(bytes.to_vec())
+}

@@ -1,0 +1,58 @@
+//! What solvers write.
+
+use hyperplan_solver::understand_output;
+
+/// Pieces of replies.
+pub(super) const PIECES: &[&str] = &[
+    "(",
+    ")",
+    "((",
+    "))",
+    "\"",
+    "|",
+    ";",
+    "\n",
+    "\r\n",
+    " ",
+    "\\",
+    "\0",
+    "é",
+    "sat",
+    "unsat",
+    "unknown",
+    "timeout",
+    "success",
+    "unsupported",
+    "warning",
+    "(error \"",
+    "\")",
+    "(:reason-unknown ",
+    "true",
+    "false",
+    "#b",
+    "#x",
+    "#b01",
+    "#xfF",
+    "(_ bv",
+    "(- ",
+    "(/ ",
+    "(- (/ ",
+    "1.0",
+    "0",
+    ".5",
+    "-",
+    "+1",
+    "170141183460469231731687303715884105728",
+    "0.0000000000000000000000000000000000000001",
+    "(x ",
+    "(|a b| ",
+    "(let ((a 1)) a)",
+];
+
+/// Replies are the same, in whatever pieces the output comes.
+pub(super) fn body(data: &[u8]) {
+    let whole = understand_output(data, data.len().max(1));
+    for piece in [1, 7] {
+        assert_eq!(understand_output(data, piece), whole, "in pieces of {piece}");
+    }
+}
