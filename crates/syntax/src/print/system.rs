@@ -167,7 +167,10 @@ impl Printer<'_> {
         self.layout.text(" {");
         for update in &clause.updates {
             self.layout.soft_indented(2);
+            // Where an update takes several lines, they are indented by more than its first one.
+            self.layout.open(Indent::By(2));
             self.update(update);
+            self.layout.close();
         }
         self.layout.soft();
         self.layout.text("}");
