@@ -45,6 +45,9 @@ enum Way {
 /// Sources with their targets, by source.
 type Listed = Vec<(i64, i64)>;
 
+/// Whether a variable can get a value between two ends.
+type Between<'b> = &'b mut dyn FnMut(&mut Terms, &mut InState<'_>, VarId, &Expr<Leaf>, &Expr<Leaf>) -> Term;
+
 /// All moves of a system, those of an action next to each other.
 #[derive(Clone, Debug)]
 pub(crate) struct Moves {
@@ -131,13 +134,7 @@ impl Moves {
     }
 
     /// For each move, whether it can be made in a state; `between` says whether a value in a range can.
-    fn each(
-        &self,
-        terms: &mut Terms,
-        system: &System,
-        state: &[Val],
-        between: &mut dyn FnMut(&mut Terms, &mut InState<'_>, VarId, &Expr<Leaf>, &Expr<Leaf>) -> Term,
-    ) -> Vec<Term> {
+    fn each(&self, terms: &mut Terms, system: &System, state: &[Val], between: Between<'_>) -> Vec<Term> {
         let mut leaves = InState { system, state };
         let absorbing = translate(terms, &system.absorb, &mut leaves).truth();
         let mut enabled = Vec::with_capacity(self.all.len());
