@@ -7,7 +7,9 @@
 use crate::eval::{bounds, code, decode, eval_in};
 use hyperplan_problem::{ActionId, Clause, Expr, Leaf, State, System, Update, VarId};
 use rustc_hash::FxHashMap;
+use std::cell::RefCell;
 use std::collections::VecDeque;
+use std::rc::Rc;
 
 /// The index of a state of a [`Graph`].
 pub type StateIx = u32;
@@ -148,6 +150,27 @@ impl Graph {
     #[must_use]
     pub fn all_live(&self) -> bool {
         self.rank.iter().all(|&r| r == LIVE)
+    }
+}
+
+/// Systems that were enumerated, for objectives over equal ones.
+#[derive(Debug, Default)]
+pub struct Graphs {
+    known: RefCell<Vec<(System, usize, Option<Rc<Graph>>)>>,
+}
+
+impl Graphs {
+    /// As [`Graph::explore`], but an equal system with the same budget is not enumerated again; `None` beyond the
+    /// budget.
+    #[must_use]
+    pub fn explore(&self, system: &System, budget: usize) -> Option<Rc<Graph>> {
+        let mut known = self.known.borrow_mut();
+        if let Some((_, _, graph)) = known.iter().find(|(s, b, _)| *b == budget && s == system) {
+            return graph.clone();
+        }
+        let graph = Graph::explore(system, budget).ok().map(Rc::new);
+        known.push((system.clone(), budget, graph.clone()));
+        graph
     }
 }
 

@@ -31,7 +31,7 @@ mod value;
 
 pub use explicit::FixedPath;
 pub use goal::Goal;
-pub use graph::{Graph, LIVE, Letter, StateIx, TooLarge};
+pub use graph::{Graph, Graphs, LIVE, Letter, StateIx, TooLarge};
 pub use inputs::{Inputs, Move, Start};
 pub use inspect::{Findings, inspect};
 pub use path::{Instance, Known, Path};
@@ -176,6 +176,21 @@ impl<'a> Encoder<'a> {
         limits: Limits,
         stop: Stop<'a>,
     ) -> Result<Self, Error> {
+        Encoder::sharing(problem, objective, wish, limits, stop, &Graphs::default())
+    }
+
+    /// As [`Encoder::new`], with what was enumerated before.
+    ///
+    /// # Errors
+    /// Those of [`Encoder::new`].
+    pub fn sharing(
+        problem: &'a Problem,
+        objective: &'a Objective,
+        wish: Option<States>,
+        limits: Limits,
+        stop: Stop<'a>,
+        graphs: &Graphs,
+    ) -> Result<Self, Error> {
         let horizons = horizons(objective, &limits)?;
         let mut models: TiVec<SystemId, Option<Model>> = problem.systems.iter().map(|_| None).collect();
         let (mut enumerable, mut finite) = (true, true);
@@ -188,7 +203,7 @@ impl<'a> Encoder<'a> {
                 return Err(Error::Unbounded { system: system.name.clone() });
             }
             finite &= system.is_finite();
-            let graph = Graph::explore(system, limits.states).ok().map(Rc::new);
+            let graph = graphs.explore(system, limits.states);
             if graph.is_none() && wish == Some(States::Onehot) {
                 return Err(Error::NotEnumerable { system: system.name.clone() });
             }

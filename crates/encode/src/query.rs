@@ -106,6 +106,25 @@ impl<'e, 'a> Query<'e, 'a> {
         Ok(found)
     }
 
+    /// Whether it is plain that no choice of the leading block's paths reaches its player's goal: nothing of some path
+    /// can matter. Where states are not enumerated, nothing is plain. Every quantifier must range over some path.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] where too much can matter.
+    pub fn is_hopeless(&mut self, block: &[PathId], goal: &Goal) -> Result<bool, Error> {
+        if self.encoder.states != States::Onehot {
+            return Ok(false);
+        }
+        for &path in block {
+            let layers = self.layers(path, goal)?;
+            if layers.at.iter().any(Vec::is_empty) {
+                return Ok(true);
+            }
+            self.declared.entry(path).or_insert(layers);
+        }
+        Ok(false)
+    }
+
     fn explore(&self, path: PathId, goal: &Goal, fixed: &[Option<FixedPath>]) -> Result<Layers, Error> {
         let [found] = layers(&Question {
             encoder: self.encoder,

@@ -150,6 +150,10 @@ pub(crate) struct Solve {
     /// Most memory of a solver
     #[arg(long, value_name = "MIB")]
     pub(crate) memory: Option<u64>,
+    /// Finds the least value of a constant, such as T, for which the objective is realizable, and proves that
+    /// smaller ones are not; the range is 0 (or the least value that the file allows) up to the constant's value
+    #[arg(long, value_name = "CONST[=LO..HI]", value_parser = minimize)]
+    pub(crate) minimize: Option<Minimize>,
     /// Draws the map with the paths into an .svg (or .txt) file
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
@@ -165,6 +169,13 @@ pub(crate) struct Solve {
     /// Seed of the solver
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) seed: u64,
+}
+
+/// A constant, and the range of its values where that was given; never empty.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Minimize {
+    pub(crate) constant: String,
+    pub(crate) range: Option<(i64, i64)>,
 }
 
 #[derive(Debug, Args)]
@@ -256,5 +267,24 @@ fn setting(text: &str) -> Result<(String, String), String> {
             Ok((name.trim().to_owned(), value.trim().to_owned()))
         }
         _ => Err("expected NAME=VALUE, such as T=8".to_owned()),
+    }
+}
+
+/// The greatest number that a range may have, as in problem files; differences of two of them are numbers still.
+const GREATEST: u64 = (1 << 62) - 1;
+
+fn minimize(text: &str) -> Result<Minimize, String> {
+    let (constant, range) = text.split_once('=').map_or((text, None), |(name, range)| (name, Some(range)));
+    let constant = constant.trim().to_owned();
+    if constant.is_empty() {
+        return Err("expected CONST or CONST=LO..HI, such as T or T=4..20".to_owned());
+    }
+    let Some(range) = range else { return Ok(Minimize { constant, range: None }) };
+    let number = |text: &str| text.trim().parse::<i64>().ok().filter(|n| n.unsigned_abs() <= GREATEST);
+    let ends = range.split_once("..").and_then(|(lo, hi)| number(lo).zip(number(hi)));
+    match ends {
+        None => Err(format!("expected a range of integers after `{constant}=`, such as {constant}=4..20")),
+        Some((lo, hi)) if lo > hi => Err(format!("the range {lo}..{hi} is empty")),
+        range => Ok(Minimize { constant, range }),
     }
 }

@@ -5,8 +5,8 @@ use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::report;
 use hyperplan_problem::answer::{StrategyFile, to_strategy};
-use hyperplan_problem::{Loader, Lowered, Objective, Overrides, Problem, Strategy, read};
-use hyperplan_syntax::{SourceMap, Span};
+use hyperplan_problem::{Loader, Lowered, Objective, Overrides, Problem, Strategy, Value, lower, read};
+use hyperplan_syntax::{SourceMap, Span, ast};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -29,13 +29,23 @@ impl Loaded {
     pub(crate) fn read(args: &args::Problem, out: &Output) -> Outcome<Loaded> {
         let start = Instant::now();
         let text = read_source(&args.file)?;
-        let (lowered, sources) = Self::lower(args, &text);
+        Self::with_consts(args, &text, start, out).map(|(loaded, _)| loaded)
+    }
+
+    /// As [`Loaded::read`], of a text that was read, which began at `start`; with its constants.
+    pub(crate) fn with_consts(
+        args: &args::Problem,
+        text: &str,
+        start: Instant,
+        out: &Output,
+    ) -> Outcome<(Loaded, Consts)> {
+        let (lowered, sources) = Self::lower(args, text);
         report::diagnostics(&sources, &lowered.diagnostics, out);
         if lowered.has_errors() {
             return Err(Failure::said());
         }
         let (file, problem) = (args.file.display().to_string(), lowered.problem);
-        Ok(Loaded { file, problem, sources, time: start.elapsed() })
+        Ok((Loaded { file, problem, sources, time: start.elapsed() }, lowered.consts))
     }
 
     /// What a text means, and what is wrong with it.
@@ -82,6 +92,21 @@ impl Loaded {
             None => line,
         }
     }
+}
+
+/// Constants with their values.
+pub(crate) type Consts = Vec<(String, Value)>;
+
+/// What a parsed file means with a constant replaced.
+pub(crate) fn lower_file(
+    args: &args::Problem,
+    file: &ast::File,
+    sources: &mut SourceMap,
+    (constant, value): (&str, i64),
+) -> Lowered {
+    let folder = Beside(args.file.parent().unwrap_or(Path::new("")).to_owned());
+    let overrides = Overrides { values: args.set.clone() }.with(constant, value);
+    lower(file, sources, &folder, &overrides)
 }
 
 /// Files named in a problem file are beside it.

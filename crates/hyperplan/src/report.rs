@@ -15,7 +15,7 @@ pub(crate) fn json(value: &impl Serialize) -> Outcome<String> {
 }
 
 /// Width of messages. The same on every terminal, so that messages can be compared.
-const WIDTH: usize = 100;
+pub(crate) const WIDTH: usize = 100;
 
 /// Prints diagnostics on standard error: errors always, warnings unless they are not wanted.
 pub(crate) fn diagnostics(sources: &SourceMap, diagnostics: &[Diagnostic], out: &Output) {

@@ -2,14 +2,16 @@
 //!
 //! [`solve`] decides an objective: quantifiers are handed to the solver, expanded into finitely many cases, or
 //! decided by counterexamples; a strategy is verified by `hyperplan-verify`, which shares nothing with the encoding,
-//! before it is returned. [`emit`] gives the query as a benchmark instead. [`lint`] and [`lint_systems`] look for
-//! what is probably not meant.
+//! before it is returned. [`minimize()`] finds the least value of a constant with which it can be had. [`emit`] gives the
+//! query as a benchmark instead. [`lint`] and [`lint_systems`] look for what is probably not meant.
 
 mod cegis;
 mod config;
 mod direct;
 mod emit;
+mod lasting;
 mod lint;
+mod minimize;
 mod oracle;
 mod prepare;
 mod solve;
@@ -17,4 +19,5 @@ mod solve;
 pub use config::{Config, EmitConfig, Error, Outcome, Quantifiers, Seconds, States, Verdict, Verified};
 pub use emit::{Emitted, emit};
 pub use lint::{Budget, Lints, lint, lint_systems};
+pub use minimize::{Family, Least, MinimizeError, minimize};
 pub use solve::solve;

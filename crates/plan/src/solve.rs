@@ -5,7 +5,7 @@ use crate::config::{Config, Error, Outcome, Quantifiers, Seconds, States, Verdic
 use crate::direct;
 use crate::oracle::{Oracle, Stop};
 use crate::prepare::{blocks, decided, no_dead_ends, without_paths};
-use hyperplan_encode::{self as encode, Encoder, Goal, Limits};
+use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Limits};
 use hyperplan_problem::{Objective, PathId, Problem, Quantifier, Strategy};
 use hyperplan_solver::Spec;
 use hyperplan_verify as verify;
@@ -20,9 +20,20 @@ const SLACKS: [Option<u32>; 2] = [Some(4), None];
 /// # Errors
 /// What is not supported, failures of solvers, and answers that fail verification; being undecided is no error.
 pub fn solve(problem: &Problem, objective: &Objective, config: &Config) -> Result<Outcome, Error> {
+    solve_sharing(problem, objective, config, &Graphs::default())
+}
+
+/// As [`solve`], with systems that were enumerated before.
+pub(crate) fn solve_sharing(
+    problem: &Problem,
+    objective: &Objective,
+    config: &Config,
+    graphs: &Graphs,
+) -> Result<Outcome, Error> {
     let start = Instant::now();
     let stop = || config.deadline.passed();
-    let encoder = Encoder::new(problem, objective, config.states.wish(), Limits::default(), &stop)?;
+    let (wish, limits) = (config.states.wish(), Limits::default());
+    let encoder = Encoder::sharing(problem, objective, wish, limits, &stop, graphs)?;
     if encoder.states == encode::States::Int && config.solver == Spec::Builtin {
         return Err(needs_arithmetic(&encoder));
     }
@@ -39,7 +50,7 @@ pub fn solve(problem: &Problem, objective: &Objective, config: &Config) -> Resul
                 problem.systems[var.system].name, var.name
             ));
             let decided = decided(objective, var.quantifier);
-            let encoder = Encoder::new(problem, &decided, config.states.wish(), Limits::default(), &stop)?;
+            let encoder = Encoder::sharing(problem, &decided, wish, limits, &stop, graphs)?;
             search(&encoder, config, &mut oracle, &mut outcome)
         }
     };

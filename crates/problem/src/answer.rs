@@ -43,6 +43,35 @@ pub struct Answer {
     pub iterations: u32,
     /// Wall time of each stage.
     pub seconds: Seconds,
+    /// What is known of the least value of a constant, where that was asked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub minimized: Option<Minimized>,
+}
+
+/// The search for the least value of a constant for which an objective is realizable. The rest of the answer is about
+/// that value; if there is none in the range, about the last that was asked.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Minimized {
+    /// The constant.
+    pub constant: String,
+    /// Where the search began, and where it would have ended.
+    pub range: (i64, i64),
+    /// The value of the strategy or property found; `null` where none was.
+    pub value: Option<i64>,
+    /// What is known of smaller values of the range.
+    pub below: Below,
+}
+
+/// What is known of the values of the range below the one found, or below its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Below {
+    /// There is none.
+    OutOfRange,
+    /// All are unrealizable.
+    Unrealizable,
+    /// Some are undecided, so the value found need not be the least.
+    Unknown,
 }
 
 /// Whether an objective can be had.

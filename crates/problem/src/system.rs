@@ -14,7 +14,7 @@ use typed_index_collections::TiVec;
 /// allow, all expressions read in `s`, variables without an update unchanged; a combination in which some value is
 /// outside its variable's type is no transition. [`System::edges`] are further transitions of such states. Two ways to
 /// the same `s'` with the same action are one transition.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct System {
     /// Its name.
     pub name: String,
@@ -41,7 +41,7 @@ pub struct System {
 }
 
 /// A state variable.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Var {
     /// Its name.
     pub name: String,
@@ -52,7 +52,7 @@ pub struct Var {
 }
 
 /// A named set of states.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Label {
     /// Its name.
     pub name: String,
@@ -63,7 +63,7 @@ pub struct Label {
 }
 
 /// `on ACTIONS when GUARD { UPDATES }`
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Clause {
     /// The actions concerned, without repetition.
     pub actions: Vec<ActionId>,
@@ -78,7 +78,7 @@ pub struct Clause {
 }
 
 /// What becomes of a variable; expressions read the state before.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Update {
     /// `v' = E`
     Assign(Expr<Leaf>),
@@ -90,7 +90,7 @@ pub enum Update {
 }
 
 /// How to draw a map: cells are named by column `x` from the left and row `y` from the bottom.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Map {
     /// Number of columns.
     pub width: u32,

@@ -2,12 +2,13 @@
 
 use crate::args::{self, Format};
 use crate::config;
-use crate::failure::{Outcome, Status};
+use crate::failure::{Failure, Outcome, Status};
+use crate::family::{Family, Searched};
 use crate::load::Loaded;
 use crate::output::{Output, write_file};
 use crate::report::{json, write_picture};
-use hyperplan_plan as plan;
-use hyperplan_problem::answer::{Answer, Ordered, Seconds, Solver, Verdict, Verified, to_witness};
+use hyperplan_plan::{self as plan, MinimizeError};
+use hyperplan_problem::answer::{Answer, Below, Ordered, Seconds, Solver, Verdict, Verified, to_witness};
 use hyperplan_problem::{Objective, Quantifier, Strategy, Trace};
 use hyperplan_render::{Board, Scene, TextStyle, actions_line, table, text_map};
 use std::time::{Duration, Instant};
@@ -20,7 +21,13 @@ const TABLE_ROWS: usize = 60;
 
 pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Output) -> Outcome {
     let config = config::Solve::new(args)?;
-    let loaded = Loaded::read(&args.problem, out)?;
+    let (family, loaded) = match &args.minimize {
+        None => (None, Loaded::read(&args.problem, out)?),
+        Some(wanted) => {
+            let (family, loaded) = Family::read(&args.problem, wanted, out)?;
+            (Some(family), loaded)
+        }
+    };
     let objectives = loaded.selected(args.selection.objective.as_deref(), false)?;
     let several = objectives.len() > 1;
     let mut worst = Status::Good;
@@ -30,17 +37,21 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
             break;
         }
         let start = Instant::now();
-        let outcome = match plan::solve(&loaded.problem, objective, &config.plan) {
-            Ok(outcome) => outcome,
-            Err(error) => {
+        let (outcome, searched) = match solve(&loaded, objective, family.as_ref(), &config.plan) {
+            Ok(found) => found,
+            Err(failure) => {
                 // The other objectives may do better.
-                out.error(format_args!("error: {}: {error}", objective.name));
-                worst = worst.max(Status::from_code(error.exit_code()));
+                out.error(format_args!("error: {}", failure.message));
+                worst = worst.max(failure.status);
                 continue;
             }
         };
-        let answer = answer(&loaded, objective, &outcome, start.elapsed());
-        let found = Found { loaded: &loaded, objective, outcome: &outcome, answer: &answer };
+        let total = loaded.time + start.elapsed();
+        let loaded = searched.as_ref().map_or(&loaded, |searched| &searched.loaded);
+        let objective = loaded.problem.objective(&objective.name).unwrap_or(objective);
+        let answer = answer(loaded, objective, &outcome, searched.as_ref(), total);
+        let searched = searched.as_ref();
+        let found = Found { loaded, objective, outcome: &outcome, answer: &answer, searched };
         match args.output.format {
             Format::Json => out.line(json(&answer)?)?,
             Format::Text if quiet => out.line(found.verdict_line())?,
@@ -57,7 +68,7 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
         }
         saved.push_str(&json(&answer)?);
         saved.push('\n');
-        worst = worst.max(status(answer.verdict));
+        worst = worst.max(status(&answer));
     }
     if let Some(path) = &config.save {
         write_file(path, saved.as_bytes())?;
@@ -65,15 +76,48 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
     Ok(worst)
 }
 
-fn status(verdict: Verdict) -> Status {
-    match verdict {
+/// The outcome for an objective, or for the least value of a constant.
+fn solve(
+    loaded: &Loaded,
+    objective: &Objective,
+    family: Option<&Family<'_>>,
+    config: &plan::Config,
+) -> Outcome<(plan::Outcome, Option<Searched>)> {
+    let name = &objective.name;
+    let failed = |error: &plan::Error, value: String| Failure {
+        status: Status::from_code(error.exit_code()),
+        message: format!("{name}{value}: {error}"),
+    };
+    let Some(family) = family else {
+        let outcome = plan::solve(&loaded.problem, objective, config);
+        return outcome.map(|outcome| (outcome, None)).map_err(|error| failed(&error, String::new()));
+    };
+    match family.least(loaded, objective, config) {
+        Ok((outcome, searched)) => Ok((outcome, Some(searched))),
+        Err(MinimizeError::Problem(failure)) => Err(failure),
+        Err(MinimizeError::Solve { value, error }) => {
+            Err(failed(&error, format!(" with {} = {value}", family.constant)))
+        }
+    }
+}
+
+fn status(answer: &Answer) -> Status {
+    match answer.verdict {
+        // A value that need not be the least is not what was asked for.
+        _ if answer.minimized.as_ref().is_some_and(|m| m.below == Below::Unknown) => Status::Undecided,
         Verdict::Realizable => Status::Good,
         Verdict::Unrealizable => Status::Unrealizable,
         Verdict::Unknown => Status::Undecided,
     }
 }
 
-fn answer(loaded: &Loaded, objective: &Objective, outcome: &plan::Outcome, elapsed: Duration) -> Answer {
+fn answer(
+    loaded: &Loaded,
+    objective: &Objective,
+    outcome: &plan::Outcome,
+    searched: Option<&Searched>,
+    total: Duration,
+) -> Answer {
     let names = objective.paths.iter().map(|p| p.name.clone());
     Answer {
         file: loaded.file.clone(),
@@ -83,7 +127,7 @@ fn answer(loaded: &Loaded, objective: &Objective, outcome: &plan::Outcome, elaps
             plan::Verdict::Unrealizable => Verdict::Unrealizable,
             plan::Verdict::Unknown => Verdict::Unknown,
         },
-        reason: outcome.reason.clone(),
+        reason: outcome.reason.clone().or_else(|| searched?.undecided.clone()),
         horizon: Ordered(names.zip(outcome.horizons.iter().copied()).collect()),
         witness: outcome.witness.as_ref().map(|s| to_witness(&loaded.problem, objective, s)),
         verified: outcome.verified.as_ref().map(|verified| match verified {
@@ -99,8 +143,9 @@ fn answer(loaded: &Loaded, objective: &Objective, outcome: &plan::Outcome, elaps
             encode: rounded(outcome.seconds.encode),
             solve: rounded(outcome.seconds.solve),
             verify: rounded(outcome.seconds.verify),
-            total: rounded((loaded.time + elapsed).as_secs_f64()),
+            total: rounded(total.as_secs_f64()),
         },
+        minimized: searched.map(|searched| searched.minimized.clone()),
     }
 }
 
@@ -115,6 +160,7 @@ struct Found<'a> {
     objective: &'a Objective,
     outcome: &'a plan::Outcome,
     answer: &'a Answer,
+    searched: Option<&'a Searched>,
 }
 
 impl<'a> Found<'a> {
@@ -124,6 +170,9 @@ impl<'a> Found<'a> {
     }
 
     fn verdict_line(&self) -> String {
+        if let Some(searched) = self.searched {
+            return format!("{}: {}", self.objective.name, searched.words);
+        }
         let verdict = match self.answer.verdict {
             Verdict::Realizable => "realizable",
             Verdict::Unrealizable => "unrealizable",

@@ -39,6 +39,7 @@ pub use consts::Overrides;
 pub(crate) use diagnostics::Diagnostics;
 pub(crate) use fractions::number;
 pub use limits::{MAX_BOUND, MAX_DEPTH, MAX_NODES};
+pub use unused::uses;
 
 use crate::expr::Value;
 use crate::ids::SystemId;

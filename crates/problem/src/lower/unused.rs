@@ -44,6 +44,14 @@ pub(super) fn unused(file: &File) -> Vec<Diagnostic> {
     found
 }
 
+/// Whether something in the file, an objective or what it may depend on, uses that name.
+#[must_use]
+pub fn uses(file: &File, name: &str) -> bool {
+    let mut uses = Uses::default();
+    file.items.iter().for_each(|item| uses.item(item));
+    uses.names.contains(name)
+}
+
 fn warning(what: &str, name: &Ident) -> Diagnostic {
     Diagnostic::warning("unused", name.span, format!("{what} {} is never used", name.name))
 }

@@ -1,0 +1,176 @@
+//! The problems that a file describes for the values of one constant.
+
+use crate::args::{self, Minimize};
+use crate::failure::{Failure, Outcome};
+use crate::load::{self, Loaded};
+use crate::output::Output;
+use hyperplan_plan::{self as plan, Config, Least, MinimizeError, Verdict, minimize};
+use hyperplan_problem::answer::{Below, Minimized};
+use hyperplan_problem::lower::uses;
+use hyperplan_problem::{Lowered, Objective, Problem, Value};
+use hyperplan_syntax::{SourceMap, ast, parse, render};
+use std::ops::RangeInclusive;
+use std::time::Instant;
+
+/// A file without errors in its syntax, and the values that its constant may take.
+pub(crate) struct Family<'a> {
+    args: &'a args::Problem,
+    pub(crate) constant: &'a str,
+    pub(crate) range: RangeInclusive<i64>,
+    file: ast::File,
+    /// With the file's own text only.
+    sources: SourceMap,
+}
+
+impl<'a> Family<'a> {
+    /// Reads a problem file. Its errors and warnings are those of the file as it is, or, if the range was given, for
+    /// the first value.
+    pub(crate) fn read(
+        args: &'a args::Problem,
+        wanted: &'a Minimize,
+        out: &Output,
+    ) -> Outcome<(Self, Loaded)> {
+        let constant = wanted.constant.as_str();
+        let start = Instant::now();
+        let text = load::read_source(&args.file)?;
+        let mut sources = SourceMap::new();
+        let source = sources.add(args.file.display().to_string(), text.as_str());
+        let (file, _) = parse(source, &text);
+        let own = declared(&file);
+        if !own.contains(&constant) && !own.is_empty() {
+            let names = own.join(", ");
+            return Err(failure(
+                args,
+                format_args!("has no constant `{constant}` to minimize; it has {names}"),
+            ));
+        }
+        let mut base = args.clone();
+        base.set.extend(wanted.range.map(|(lo, _)| (constant.to_owned(), lo.to_string())));
+        let (loaded, consts) = Loaded::with_consts(&base, &text, start, out)?;
+        let value = consts.into_iter().find(|(name, _)| name == constant).map(|(_, value)| value);
+        let value = match value {
+            Some(Value::Int(value)) => value,
+            Some(_) => {
+                let reason = format_args!("gives `{constant}` a fraction; only integers can be minimized");
+                return Err(failure(args, reason));
+            }
+            None => return Err(failure(args, format_args!("has no constant `{constant}` to minimize"))),
+        };
+        if !uses(&file, constant) {
+            return Err(failure(args, format_args!("never uses the constant `{constant}`")));
+        }
+        let range = match wanted.range {
+            Some((lo, hi)) => lo..=hi,
+            None if value < 0 => {
+                let message = format_args!(
+                    "has {constant} = {value}, so the range must be said: --minimize {constant}=LO..HI"
+                );
+                return Err(failure(args, message));
+            }
+            None => 0..=value,
+        };
+        let mut family = Family { args, constant, range, file, sources };
+        if wanted.range.is_none() {
+            // Such as 0 in `[1,T]`. The file's own value has no errors, so there is such a value.
+            let lo = (0..value).find(|&value| !family.lower(value).0.has_errors()).unwrap_or(value);
+            family.range = lo..=value;
+        }
+        Ok((family, loaded))
+    }
+
+    /// The least value for which an objective is realizable. `base` is the file for another value.
+    pub(crate) fn least(
+        &self,
+        base: &Loaded,
+        objective: &Objective,
+        config: &Config,
+    ) -> Result<(plan::Outcome, Searched), MinimizeError<Failure>> {
+        let mut time = base.time;
+        let mut problem = |value: i64| {
+            let start = Instant::now();
+            let problem = self.problem(value);
+            time += start.elapsed();
+            problem
+        };
+        let least = minimize(&objective.name, self.range.clone(), &mut problem, config)?;
+        let (below, words) = self.said(&least);
+        let minimized = Minimized {
+            constant: self.constant.to_owned(),
+            range: (*self.range.start(), *self.range.end()),
+            value: (least.outcome.verdict == Verdict::Realizable).then_some(least.value),
+            below,
+        };
+        let loaded =
+            Loaded { file: base.file.clone(), problem: least.problem, sources: base.sources.clone(), time };
+        Ok((least.outcome, Searched { loaded, minimized, undecided: least.undecided, words }))
+    }
+
+    /// What is known of smaller values, and the whole result in words.
+    fn said(&self, least: &Least) -> (Below, String) {
+        let Least { value, proved, .. } = *least;
+        let (name, first) = (self.constant, *self.range.start());
+        let values = |lo: i64, hi: i64| if lo == hi { lo.to_string() } else { format!("{lo}..{hi}") };
+        let below = if proved == first { Below::OutOfRange } else { Below::Unrealizable };
+        match (least.outcome.verdict, &least.undecided) {
+            (Verdict::Realizable, Some(reason)) => {
+                let open = values(proved, value - 1);
+                (Below::Unknown, format!("realizable with {name} = {value}, unknown with {open}: {reason}"))
+            }
+            (Verdict::Realizable, None) if proved == first => {
+                (below, format!("realizable with {name} = {value}, the first of the range"))
+            }
+            (Verdict::Realizable, None) => {
+                let refuted = values(first, value - 1);
+                (below, format!("realizable with {name} = {value}, unrealizable with {refuted}"))
+            }
+            (Verdict::Unrealizable, _) => {
+                (below, format!("unrealizable with {name} = {}", values(first, value)))
+            }
+            (Verdict::Unknown, reason) => {
+                let reason = reason.as_deref().unwrap_or("undecided");
+                let below = if value == proved { below } else { Below::Unknown };
+                (below, format!("unknown with {name} = {value}: {reason}"))
+            }
+        }
+    }
+
+    fn problem(&self, value: i64) -> Outcome<Problem> {
+        let (lowered, sources) = self.lower(value);
+        if lowered.has_errors() {
+            let errors: Vec<_> = lowered.diagnostics.into_iter().filter(|d| d.is_error()).collect();
+            let errors = render(&sources, &errors, false, crate::report::WIDTH);
+            let message = format_args!("has errors for {} = {value}\n\n{}", self.constant, errors.trim_end());
+            return Err(failure(self.args, message));
+        }
+        Ok(lowered.problem)
+    }
+
+    fn lower(&self, value: i64) -> (Lowered, SourceMap) {
+        let mut sources = self.sources.clone();
+        let lowered = load::lower_file(self.args, &self.file, &mut sources, (self.constant, value));
+        (lowered, sources)
+    }
+}
+
+/// What came of a search for the least value.
+pub(crate) struct Searched {
+    /// The file with the value that the outcome is about.
+    pub(crate) loaded: Loaded,
+    pub(crate) minimized: Minimized,
+    /// Why the value found may not be the least.
+    pub(crate) undecided: Option<String>,
+    /// The result, on one line.
+    pub(crate) words: String,
+}
+
+fn failure(args: &args::Problem, what: std::fmt::Arguments<'_>) -> Failure {
+    Failure::input(format_args!("{} {what}", args.file.display()))
+}
+
+fn declared(file: &ast::File) -> Vec<&str> {
+    let constants = file.items.iter().filter_map(|item| match item {
+        ast::Item::Const(constant) => Some(constant.name.name.as_str()),
+        _ => None,
+    });
+    constants.collect()
+}

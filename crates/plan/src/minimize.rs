@@ -1,0 +1,293 @@
+//! The least value of a constant for which an objective is realizable.
+//!
+//! Values are taken upwards, and every smaller value of the range is proved unrealizable before one is called the least.
+//! Only three things make that faster than asking one after the other, and all are proofs:
+//!
+//! - *More does not hurt*: where the whole objective lasts ([`crate::lasting`]) from each value to the next, one that
+//!   is unrealizable for a value is so for all smaller ones. Then values are tried at growing distances, and the gap
+//!   is bisected.
+//! - *Parts that last*: of other objectives those conjuncts are taken that last. If these alone are hopeless for a
+//!   value, so is the objective for all smaller ones.
+//! - *Hopeless* is what the states that can matter show without any solver: for some path of the leading block
+//!   there are none, say since the goal is too far away.
+//!
+//! Systems that do not change with the constant are enumerated once.
+
+use crate::config::{Config, Error, Outcome, Seconds, Verdict};
+use crate::lasting::{conjuncts, lasting};
+use crate::solve::solve_sharing;
+use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Limits, Query, States};
+use hyperplan_problem::{FormulaId, Node, Objective, Problem, Quantifier};
+use std::ops::RangeInclusive;
+use std::time::Instant;
+
+/// What is known of the least value.
+#[derive(Debug)]
+pub struct Least {
+    /// The value of the constant that the outcome is about. If the outcome is realizable and nothing is `undecided`,
+    /// it is the least; if it is unrealizable, so is the whole range, of which it is the last.
+    pub value: i64,
+    /// The problem with this value.
+    pub problem: Problem,
+    /// The answer for this value; times and rounds are those of all values tried.
+    pub outcome: Outcome,
+    /// Every smaller value of the range is unrealizable.
+    pub proved: i64,
+    /// Why the search ended before `proved` was raised to a realizable `value`.
+    pub undecided: Option<String>,
+}
+
+/// Why there is no answer at all.
+#[derive(Debug, thiserror::Error)]
+pub enum MinimizeError<E> {
+    /// There is no problem for some value.
+    #[error("{0}")]
+    Problem(E),
+    /// The search failed for a value.
+    #[error("for {value}: {error}")]
+    Solve {
+        /// The value.
+        value: i64,
+        /// Why.
+        error: Error,
+    },
+}
+
+/// The problem for each value of a constant.
+pub type Family<'a, E> = &'a mut dyn FnMut(i64) -> Result<Problem, E>;
+
+/// The least value of the range for which the objective of that name is realizable. The deadline is for all values
+/// together. Of an empty range the first value is asked.
+///
+/// # Errors
+/// Those of the family, for a value that has to be asked, and those of [`crate::solve()`].
+pub fn minimize<E>(
+    objective: &str,
+    range: RangeInclusive<i64>,
+    family: Family<'_, E>,
+    config: &Config,
+) -> Result<Least, MinimizeError<E>> {
+    let (low, high) = (*range.start(), *range.end().max(range.start()));
+    let problem = family(low).map_err(MinimizeError::Problem)?;
+    let parts = conjuncts(&find(&problem, objective, low)?.formula);
+    let chain = Chain { end: low, whole: !parts.is_empty(), parts, problem };
+    let graphs = Graphs::default();
+    let mut search = Search {
+        objective,
+        family,
+        config,
+        graphs,
+        chain,
+        low,
+        high,
+        seconds: Seconds::default(),
+        rounds: 0,
+    };
+    search.refute()?;
+    search.run()
+}
+
+fn find<'p, E>(problem: &'p Problem, name: &str, value: i64) -> Result<&'p Objective, MinimizeError<E>> {
+    let missing = || Error::Unsupported(format!("there is no objective {name}"));
+    problem.objective(name).ok_or_else(|| MinimizeError::Solve { value, error: missing() })
+}
+
+/// What lasts from the first value of the range up to `end`.
+struct Chain {
+    end: i64,
+    /// Whether all of the objective does.
+    whole: bool,
+    /// The conjuncts that do.
+    parts: Vec<FormulaId>,
+    /// The problem for `end`.
+    problem: Problem,
+}
+
+struct Search<'a, E> {
+    objective: &'a str,
+    family: Family<'a, E>,
+    config: &'a Config,
+    graphs: Graphs,
+    chain: Chain,
+    /// Smaller values are unrealizable.
+    low: i64,
+    high: i64,
+    seconds: Seconds,
+    rounds: u32,
+}
+
+/// An answer for a value.
+struct Solved {
+    value: i64,
+    problem: Problem,
+    outcome: Outcome,
+}
+
+/// Where to look next: at growing distances while the answer is no, then in the middle of what is left.
+struct Steps {
+    distance: i64,
+    /// The least value known to be otherwise.
+    bound: Option<i64>,
+}
+
+impl Steps {
+    fn new() -> Self {
+        Steps { distance: 0, bound: None }
+    }
+
+    /// A value from `low` up, where smaller ones are settled; `None` where the bound is reached.
+    fn next(&self, low: i64, high: i64) -> Option<i64> {
+        match self.bound {
+            Some(bound) if bound <= low => None,
+            Some(bound) => Some(low + (bound - low) / 2),
+            None => Some(low.saturating_add(self.distance).min(high)),
+        }
+    }
+
+    fn grow(&mut self) {
+        self.distance = self.distance.saturating_mul(2).saturating_add(1);
+    }
+}
+
+impl<E> Search<'_, E> {
+    fn problem(&mut self, value: i64) -> Result<Problem, MinimizeError<E>> {
+        (self.family)(value).map_err(MinimizeError::Problem)
+    }
+
+    /// Follows the chain up to a value. The deadline ends it, and so does a value without a problem: it may never
+    /// have to be asked.
+    fn follow(&mut self, value: i64) {
+        while self.chain.end < value && !self.chain.parts.is_empty() {
+            let next = self.chain.end + 1;
+            let problem = if self.config.deadline.passed() { None } else { (self.family)(next).ok() };
+            let chain = &mut self.chain;
+            let lasts = problem.as_ref().and_then(|problem| {
+                let (from, to) =
+                    (chain.problem.objective(self.objective)?, problem.objective(self.objective)?);
+                lasting((&chain.problem, from), (problem, to), &self.graphs)
+            });
+            let before = chain.parts.len();
+            chain.parts.retain(|&part| lasts.as_ref().is_some_and(|lasts| lasts[part]));
+            chain.whole &= chain.parts.len() == before;
+            chain.end = next;
+            if let Some(problem) = problem {
+                chain.problem = problem;
+            }
+        }
+    }
+
+    /// Raises `low` past values for which the parts that last are hopeless.
+    fn refute(&mut self) -> Result<(), MinimizeError<E>> {
+        let mut steps = Steps::new();
+        while let Some(value) = steps.next(self.low, self.high) {
+            self.follow(value);
+            if self.chain.parts.is_empty() {
+                break;
+            }
+            let problem = self.problem(value)?;
+            let mut objective = find(&problem, self.objective, value)?.clone();
+            objective.formula.push(Node::And(self.chain.parts.clone()), objective.span);
+            if !self.is_hopeless(&problem, &objective) {
+                steps.bound = Some(value);
+            } else if value == self.high {
+                // The answer for the last value is wanted too.
+                self.low = value;
+                break;
+            } else {
+                self.low = value + 1;
+                steps.grow();
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the states that can matter show that the objective is unrealizable.
+    fn is_hopeless(&mut self, problem: &Problem, objective: &Objective) -> bool {
+        let start = Instant::now();
+        let hopeless = hopeless(problem, objective, self.config, &self.graphs);
+        self.seconds.encode += start.elapsed().as_secs_f64();
+        // What cannot be settled here is left to the solver.
+        hopeless.unwrap_or(false)
+    }
+
+    fn run(mut self) -> Result<Least, MinimizeError<E>> {
+        let mut best: Option<Solved> = None;
+        let mut steps = Steps::new();
+        loop {
+            if let Some(least) = best.take_if(|best| best.value == self.low) {
+                return Ok(self.conclude(least, None));
+            }
+            let far = steps.next(self.low, self.high).unwrap_or(self.low);
+            if self.chain.whole {
+                self.follow(far);
+            }
+            let value = if self.chain.whole { far } else { self.low };
+            let problem = self.problem(value)?;
+            // Where the objective lasts, `refute` has asked this.
+            if !self.chain.whole && value < self.high {
+                let objective = find(&problem, self.objective, value)?;
+                if self.is_hopeless(&problem, objective) {
+                    self.low = value + 1;
+                    continue;
+                }
+            }
+            let solved = self.solve(value, problem)?;
+            match solved.outcome.verdict {
+                Verdict::Realizable => {
+                    steps.bound = Some(value);
+                    best = Some(solved);
+                }
+                Verdict::Unrealizable if value == self.high => return Ok(self.conclude(solved, None)),
+                Verdict::Unrealizable => {
+                    self.low = value + 1;
+                    steps.grow();
+                }
+                Verdict::Unknown => {
+                    let reason = solved.outcome.reason.clone().unwrap_or_else(|| "unknown".to_owned());
+                    return Ok(self.conclude(best.unwrap_or(solved), Some(reason)));
+                }
+            }
+        }
+    }
+
+    fn solve(&mut self, value: i64, problem: Problem) -> Result<Solved, MinimizeError<E>> {
+        let objective = find(&problem, self.objective, value)?;
+        let outcome = solve_sharing(&problem, objective, self.config, &self.graphs)
+            .map_err(|error| MinimizeError::Solve { value, error })?;
+        self.seconds.encode += outcome.seconds.encode;
+        self.seconds.solve += outcome.seconds.solve;
+        self.seconds.verify += outcome.seconds.verify;
+        self.rounds += outcome.iterations;
+        Ok(Solved { value, problem, outcome })
+    }
+
+    fn conclude(self, solved: Solved, undecided: Option<String>) -> Least {
+        let Solved { value, problem, mut outcome } = solved;
+        outcome.seconds = self.seconds;
+        outcome.iterations = self.rounds;
+        Least { value, problem, outcome, proved: self.low, undecided }
+    }
+}
+
+/// Whether nothing can matter of some path of a leading block of existential paths. That counts only where every
+/// quantifier ranges over some path.
+fn hopeless(
+    problem: &Problem,
+    objective: &Objective,
+    config: &Config,
+    graphs: &Graphs,
+) -> Result<bool, encode::Error> {
+    let stop = || config.deadline.passed();
+    let encoder =
+        Encoder::sharing(problem, objective, config.states.wish(), Limits::default(), &stop, graphs)?;
+    let exists = objective.paths.first().is_some_and(|path| path.quantifier == Quantifier::Exists);
+    if !exists || encoder.states != States::Onehot {
+        return Ok(false);
+    }
+    if !objective.paths.keys().all(|path| encoder.has_path(path) == Some(true)) {
+        return Ok(false);
+    }
+    let goal = Goal::new(&objective.formula, true);
+    let leading = objective.leading_block();
+    Query::new(&encoder, &[]).is_hopeless(&leading, &goal)
+}
