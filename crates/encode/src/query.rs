@@ -13,6 +13,7 @@ use crate::{Encoder, Error, Graph, States};
 use hyperplan_problem::PathId;
 use hyperplan_smt::{Model, Script, Term};
 use rustc_hash::FxHashMap;
+use std::cell::Cell;
 use std::rc::Rc;
 
 /// The paths over which the formula is unrolled, by path variable.
@@ -30,6 +31,8 @@ pub struct Query<'e, 'a> {
     declared: FxHashMap<PathId, Rc<Layers>>,
     /// See [`Query::with_slack`].
     slack: Option<u32>,
+    /// Whether the slack has lost runs.
+    lossy: Cell<bool>,
     instances: Instances,
     /// How many copies of each path variable there are, for names.
     copies: FxHashMap<PathId, u32>,
@@ -61,6 +64,7 @@ impl<'e, 'a> Query<'e, 'a> {
             layers: FxHashMap::default(),
             declared: FxHashMap::default(),
             slack: None,
+            lossy: Cell::new(false),
             instances: Instances::default(),
             copies: FxHashMap::default(),
         }
@@ -77,6 +81,12 @@ impl<'e, 'a> Query<'e, 'a> {
     /// Lifts [`Query::with_slack`] for the paths to come.
     pub fn lift_slack(&mut self) {
         self.slack = None;
+    }
+
+    /// Whether no run was lost by [`Query::with_slack`], so that nothing found means that there is nothing.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        !self.lossy.get()
     }
 
     /// An environment without paths.
@@ -133,6 +143,7 @@ impl<'e, 'a> Query<'e, 'a> {
             goal,
             fixed,
             slack: self.slack,
+            lossy: &self.lossy,
             budget: self.encoder.limits.layer_states,
         })?;
         Ok(found)
@@ -150,6 +161,7 @@ impl<'e, 'a> Query<'e, 'a> {
             goal,
             fixed: &self.fixed,
             slack: None,
+            lossy: &self.lossy,
             budget: encoder.limits.pairs,
         })
         .ok()?;

@@ -26,6 +26,7 @@ use crate::residual::{FALSE, MAX_ATOMS, Now, Residual, Residuals, TRUE};
 use crate::{Encoder, Error};
 use hyperplan_problem::{ActionId, Expr, FormulaId, Leaf, Mode, Node, PathId, PathLeaf};
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::cell::Cell;
 
 /// The states that can matter at each time `0..=horizon`, sorted.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -55,6 +56,8 @@ pub(crate) struct Question<'a, const N: usize> {
     pub(crate) fixed: &'a [Option<FixedPath>],
     /// How much later than the earliest run a run may owe nothing more.
     pub(crate) slack: Option<u32>,
+    /// Set where the slack loses a run.
+    pub(crate) lossy: &'a Cell<bool>,
     /// Joint states, over all times, beyond which to give up.
     pub(crate) budget: usize,
 }
@@ -235,7 +238,13 @@ impl<'a, const N: usize> Exploration<'a, N> {
     /// Whether the slack leaves a joint state in.
     fn in_slack(&self, residual: Residual, time: u32) -> bool {
         match (self.question.slack, self.earliest) {
-            (Some(slack), Some(earliest)) => residual == TRUE || time < earliest.saturating_add(slack),
+            (Some(slack), Some(earliest)) => {
+                let kept = residual == TRUE || time < earliest.saturating_add(slack);
+                if !kept {
+                    self.question.lossy.set(true);
+                }
+                kept
+            }
             _ => true,
         }
     }

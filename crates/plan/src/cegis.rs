@@ -32,6 +32,8 @@ pub(crate) struct Cegis<'s, 'a, 'c> {
     pub(crate) rounds: u32,
     /// For the leading block, see [`Query::with_slack`].
     pub(crate) slack: Option<u32>,
+    /// Whether the slack has lost nothing, so that nothing found means that there is nothing.
+    pub(crate) exact: bool,
 }
 
 /// An instance of the formula up to a block of the other player.
@@ -129,6 +131,7 @@ impl<'s, 'a> Cegis<'s, 'a, '_> {
         }
         let formula = &encoder.objective.formula;
         query.lift_slack();
+        self.exact &= query.is_exact();
         let (own, rest) = goal.split(formula, &|path| env[usize::from(path)].is_some());
         query.script.section("what the formula asks of these paths alone");
         let demanded = query.goal(&env, &own);

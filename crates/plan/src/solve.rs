@@ -11,7 +11,8 @@ use hyperplan_solver::Spec;
 use hyperplan_verify as verify;
 use std::time::Instant;
 
-/// Runs that are hardly longer than the shortest make small queries, so they are tried first; then all.
+/// Runs that are hardly longer than the shortest make small queries, so they are tried first; then all, if there are
+/// others.
 const SLACKS: [Option<u32>; 2] = [Some(4), None];
 
 /// Decides an objective. A strategy (or counterexample) in the outcome has been verified, unless the configuration
@@ -135,21 +136,21 @@ fn search(
             Quantifiers::Auto => direct::sweep(encoder, &blocks, want, slack)?,
             _ => None,
         };
-        let found = if let Some(query) = query {
+        let (found, exact) = if let Some(query) = query {
             outcome.quantifiers = Quantifiers::Expand;
             outcome.iterations += 1;
-            query.solve(oracle, 1)?
+            (query.solve(oracle, 1)?, query.query.is_exact())
         } else {
             if choice == Quantifiers::Auto {
                 outcome.quantifiers = Quantifiers::Cegis;
             }
-            let mut cegis = Cegis { encoder, oracle, blocks: &blocks, rounds: 0, slack };
+            let mut cegis = Cegis { encoder, oracle, blocks: &blocks, rounds: 0, slack, exact: true };
             let known = vec![None; objective.paths.len()];
             let found = cegis.find(0, &known, &goal, 1);
             outcome.iterations += cegis.rounds;
-            found?.pop()
+            (found?.pop(), cegis.exact)
         };
-        if found.is_some() {
+        if found.is_some() || exact {
             return Ok(found);
         }
     }
@@ -263,6 +264,7 @@ fn defeated(encoder: &Encoder<'_>, config: &Config, strategy: &Strategy) -> Resu
     let formula = &objective.formula;
     let against = Goal::new(formula, want).opposed(formula);
     let mut oracle = Oracle::new(&own);
-    let mut cegis = Cegis { encoder, oracle: &mut oracle, blocks: &blocks, rounds: 0, slack: None };
+    let mut cegis =
+        Cegis { encoder, oracle: &mut oracle, blocks: &blocks, rounds: 0, slack: None, exact: true };
     Ok(!cegis.find(1, &known, &against, 1)?.is_empty())
 }
