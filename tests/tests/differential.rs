@@ -16,6 +16,8 @@ use hyperplan_verify::{Budget, check, decide};
 use std::str::FromStr;
 use std::time::{Duration, Instant};
 
+#[path = "differential/minimize.rs"]
+mod minimize;
 #[path = "differential/semantics.rs"]
 mod semantics;
 #[path = "differential/unbounded.rs"]

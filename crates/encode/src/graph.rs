@@ -156,8 +156,11 @@ impl Graph {
 /// Systems that were enumerated, for objectives over equal ones.
 #[derive(Debug, Default)]
 pub struct Graphs {
-    known: RefCell<Vec<(System, usize, Option<Rc<Graph>>)>>,
+    known: RefCell<Vec<Explored>>,
 }
+
+/// A system, the budget, and what came of it.
+type Explored = (System, usize, Option<Rc<Graph>>);
 
 impl Graphs {
     /// As [`Graph::explore`], but an equal system with the same budget is not enumerated again; `None` beyond the

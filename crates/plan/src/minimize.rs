@@ -33,7 +33,7 @@ pub struct Least {
     pub outcome: Outcome,
     /// Every smaller value of the range is unrealizable.
     pub proved: i64,
-    /// Why the search ended before `proved` was raised to a realizable `value`.
+    /// Why the search ended before `proved` reached a realizable `value`.
     pub undecided: Option<String>,
 }
 
@@ -237,7 +237,10 @@ impl<E> Search<'_, E> {
                     steps.bound = Some(value);
                     best = Some(solved);
                 }
-                Verdict::Unrealizable if value == self.high => return Ok(self.conclude(solved, None)),
+                Verdict::Unrealizable if value == self.high => {
+                    self.low = value;
+                    return Ok(self.conclude(solved, None));
+                }
                 Verdict::Unrealizable => {
                     self.low = value + 1;
                     steps.grow();
