@@ -32,6 +32,9 @@
 //! path that is given under `forall` is cut, answered as before, and the answer of each `exists` is prolonged in any
 //! way. That needs that the systems of existential paths have no dead ends; the cut path is a path all the same.
 
+#[cfg(test)]
+mod tests;
+
 use hyperplan_encode::{Graphs, Limits};
 use hyperplan_problem::{
     Formula, FormulaId, Interval, Mode, Node, Objective, Problem, Quantifier, TemporalOp,
