@@ -6,6 +6,8 @@
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use std::ffi::OsStr;
+use std::fmt;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -78,7 +80,7 @@ fn accepted(path: &Path) -> Result<(), Failed> {
     // What `check` can say of integers and reals depends on there being a solver for them.
     let by_others = expectations(path).iter().any(|expected| expected.solver != "builtin");
     if by_others && !is_required() && !has_external_solver()? {
-        eprintln!("no solver for {}: skipped", path.display());
+        say(format_args!("no solver for {}: skipped", path.display()));
         return Ok(());
     }
     let output = hyperplan(&["check".as_ref(), path.as_os_str()])?;
@@ -144,6 +146,10 @@ fn expectations(path: &Path) -> Vec<Expected> {
     expected
 }
 
+fn say(words: fmt::Arguments<'_>) {
+    let _ = writeln!(std::io::stderr(), "{words}");
+}
+
 /// Whether a missing solver is a failure.
 fn is_required() -> bool {
     std::env::var_os("HYPERPLAN_REQUIRE_SOLVERS").is_some()
@@ -171,7 +177,7 @@ fn solved(path: &Path, expected: &Expected) -> Result<(), Failed> {
         && output.status.code() == Some(4)
         && messages.contains("not found")
     {
-        eprintln!("{solver} is missing: skipped");
+        say(format_args!("{solver} is missing: skipped"));
         return Ok(());
     }
     let status = if verdict == "realizable" { 0 } else { 1 };
