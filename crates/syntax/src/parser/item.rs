@@ -331,8 +331,7 @@ fn comment_above(text: &str, place: Span) -> String {
         return String::new();
     }
     let mut lines: Vec<&str> = above[..line_start]
-        .lines()
-        .rev()
+        .rsplit('\n')
         .map_while(|line| line.trim_start().strip_prefix("//"))
         .map(|line| line.strip_prefix(' ').unwrap_or(line).trim_end())
         .collect();
