@@ -3,6 +3,9 @@
 //! Lines are broken where they would be too long, and where the author broke them between a formula's quantifiers and
 //! its body or behind an opening brace. Comments stay in front of what they stood in front of, or beside what they
 //! stood beside.
+//!
+//! Formatting what is formatted changes nothing. So between two tokens that are always printed there is one place for
+//! comments, and how they are printed there depends only on what is printed in front of them.
 
 mod expr;
 mod item;
@@ -10,7 +13,7 @@ mod layout;
 mod source;
 mod system;
 
-use crate::ast::{Expr, File, Ident, Item, ObjectiveBody};
+use crate::ast::{Expr, ExprKind, File, Ident, Item, ObjectiveBody};
 use layout::{Indent, Layout};
 use source::Source;
 
@@ -60,9 +63,16 @@ impl Printer<'_> {
 
     /// Begins a line with what stood at `at`.
     fn begin(&mut self, at: usize) {
+        self.begin_up_to(at, at);
+    }
+
+    /// The same; comments up to `first` stand above the line too.
+    fn begin_up_to(&mut self, at: usize, first: usize) {
         self.comments(at);
         let apart = self.source.is_apart(at) && !self.fresh;
         self.layout.line(apart);
+        self.comments(first);
+        self.layout.line(false);
         self.fresh = false;
     }
 
@@ -139,8 +149,22 @@ impl Printer<'_> {
     }
 }
 
-fn start(e: &Expr) -> usize {
-    e.span.start as usize
+/// Where the first token of an expression stands that is printed whatever happens to parentheses: comments in front of
+/// it are printed in front of all of the expression, wherever among the parentheses they stood.
+fn start(mut e: &Expr) -> usize {
+    loop {
+        e = match &e.kind {
+            ExprKind::And(items) | ExprKind::Or(items) if !items.is_empty() => &items[0],
+            ExprKind::Sum(items) if !items.is_empty() => &items[0].1,
+            ExprKind::Implies(first, _)
+            | ExprKind::Iff(first, _)
+            | ExprKind::Compare(_, first, _)
+            | ExprKind::Arith(_, first, _)
+            | ExprKind::In(first, _)
+            | ExprKind::Binary(_, _, first, _) => first,
+            _ => return e.span.start as usize,
+        };
+    }
 }
 
 fn end(e: &Expr) -> usize {

@@ -126,6 +126,73 @@ fn parentheses() {
     assert_eq!(formula("∃p.∀q. ¬a[p] ∧ ◇[0,1] b[q]"), "exists p. forall q. !a[p] & F[0,1] b[q]");
 }
 
+/// All constructs, most in parentheses that are not needed.
+const ODD: &str = "\
+const A = (if ((a) & b) then (c -> (d -> e)) else (if (x) then y else ((on W[false] not) % (1)))) - ((2)) * (-(3));
+
+system S {
+  state x : (0) .. (T - 1), y : { red , blue }, z : bool, r : real;
+  action left, right;
+  on left | right when (x == (0)) { x' = ((x) + 1); y' in { (red), (blue) }; x' in (0) .. (2); }
+  on * { }
+  on left {
+    x' = 1;
+  }
+  init ((x) == 0) & y in { red }; label goal = (x, (y)) in { (0, red) };
+  observe (x), y;
+  absorb ((goal));
+}
+
+system M = grid { \"..G\" \"S..\" edge stay; }
+system E = grid { \"SG\" }
+system N = grid(\"f.txt\") { moves up, down; legend 'W' = water; }
+system G = graph(\"g.json\");
+system H = graph(\"g.json\") { }
+template u(a) { G a }
+define near(p, q) = (x[p] - x[q]) <= 1;
+
+template t(a, k) {
+  exists p. (F[(1), k] (a[p]) U[k] (X (!(a[p]))))
+}
+
+objective o within (T) semantics stutter { define d(p) = (a[p]); exists p : S . exists q : S , r : M . forall d .
+  ((((a[p]) & b[q]) | (near(p, q))) <-> (state[p] in enabled[q])) }
+objective i { exists p. exists q : S. (((a[p] == 1) & b[q])) }
+objective u { ((a) -> b) }
+objective s within (2) * T = t(goal, (1) + 2);
+";
+
+/// Wherever comments stand, formatting twice is the same as formatting once.
+#[test]
+fn comments_anywhere() {
+    let mut sound = 0;
+    for part in ODD.split("\n\n") {
+        let tree = without_places(&good(part));
+        for at in (0..=part.len()).filter(|at| part.is_char_boundary(*at)) {
+            let (before, after) = part.split_at(at);
+            let inside = |c: char| c.is_alphanumeric() || c == '_';
+            if before.ends_with(inside) && after.starts_with(inside) {
+                continue;
+            }
+            let (next, rest) = after.split_at(after.chars().next().map_or(0, char::len_utf8));
+            for text in [
+                format!("{before} // c\n{after}"),
+                format!("{before}\n// c\n{after}"),
+                format!("{before}\n\n  // c\n  // d\n\n{after}"),
+                format!("{before}// c\n{next}// d\n{rest}"),
+            ] {
+                let (commented, errors) = parse(SOURCE, &text);
+                // In a string or in the middle of `..` it is no comment.
+                if errors.is_empty() && without_places(&commented) == tree {
+                    roundtrip::formatted(&commented, &text);
+                    sound += 1;
+                }
+            }
+        }
+    }
+    assert!(sound > 2000, "{sound}");
+}
+
 #[test]
 fn quantifiers_share_their_words() {
     assert_eq!(formula("exists p. exists q. a"), "exists p, q. a");

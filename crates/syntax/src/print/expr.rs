@@ -2,9 +2,9 @@
 
 use std::borrow::Cow;
 
-use super::Printer;
 use super::layout::Indent;
 use super::system::quoted;
+use super::{Printer, start};
 use crate::ast::{ArithOp, BinaryOp, CompareOp, Expr, ExprKind, Ident, Interval, Set, UnaryOp};
 use crate::parser::operator::level;
 
@@ -54,7 +54,7 @@ impl Printer<'_> {
             let first = stack.len();
             match task {
                 Task::Expr(e, least) => {
-                    self.comments(e.span.start as usize);
+                    self.comments(start(e));
                     wrapped(e, least, &mut stack);
                 }
                 Task::Rest(e) => parts(e, &mut stack),
@@ -64,7 +64,7 @@ impl Printer<'_> {
                 Task::Soft => {
                     // Comments in front of what comes next stand in front of its operator too.
                     if let Some(next) = stack.iter().rev().find_map(|task| match task {
-                        Task::Expr(e, _) | Task::Rest(e) => Some(e.span.start as usize),
+                        Task::Expr(e, _) | Task::Rest(e) => Some(start(e)),
                         _ => None,
                     }) {
                         self.comments(next);

@@ -78,9 +78,15 @@ impl Printer<'_> {
     /// `{ DEFINES QUANTIFIERS BODY }`; the braces open behind `head`.
     fn formula(&mut self, formula: &Formula<'_>, head: usize) {
         let (open, close) = self.source.braces(head);
-        let first = match formula.quantifiers.first() {
-            Some(quantifier) => self.source.word_before(quantifier.path.span.start as usize),
-            None => self.source.opening(start(formula.body)),
+        let (first, inner) = match formula.quantifiers.first() {
+            Some(Quantifier { path, .. }) => {
+                let inner = path.span.start as usize;
+                (self.source.word_before(inner), inner)
+            }
+            None => {
+                let inner = start(formula.body);
+                (self.source.opening(inner), inner)
+            }
         };
         let on_one_line = formula.defines.is_empty()
             && self.source.is_known()
@@ -101,7 +107,7 @@ impl Printer<'_> {
         for define in formula.defines {
             self.define(define);
         }
-        self.begin(first);
+        self.begin_up_to(first, inner);
         self.layout.open(Indent::By(0));
         self.quantifiers(formula.quantifiers);
         self.body(formula, 2);
@@ -114,9 +120,10 @@ impl Printer<'_> {
         let body = formula.body;
         if let Some(last) = formula.quantifiers.last() {
             let last = last.system.as_ref().unwrap_or(&last.path).span.end as usize;
-            if self.source.breaks_between(last, start(body)) {
+            let first = start(body);
+            if self.source.breaks_between(last, first) || self.source.comments_before(first) > 0 {
                 self.layout.open(Indent::By(indent));
-                self.comments(start(body));
+                self.comments(first);
                 self.layout.line(false);
                 self.expr(body);
                 self.layout.close();

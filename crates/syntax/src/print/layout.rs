@@ -87,6 +87,10 @@ impl Layout {
             match piece {
                 Piece::Text(text) => lines.text(text),
                 Piece::Comment(text, beside) => {
+                    if lines.due.is_some() {
+                        // There is nothing to stand beside: it has a line of its own in this group.
+                        lines.end(false, group.indent);
+                    }
                     lines.comment(text, *beside);
                     lines.end(false, group.indent);
                 }
@@ -207,9 +211,11 @@ impl Lines {
             self.out.push(' ');
             self.column += 1;
         }
-        self.blank = false;
-        self.out.push_str(text);
-        self.column += text.chars().count();
+        // A blank at the end is due too: it is lost where the line ends.
+        let shown = text.trim_end_matches(' ');
+        self.blank = shown.len() < text.len();
+        self.out.push_str(shown);
+        self.column += shown.chars().count();
     }
 
     fn comment(&mut self, text: &str, beside: bool) {

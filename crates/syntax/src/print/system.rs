@@ -11,7 +11,8 @@ impl Printer<'_> {
         self.begin_word(system.name.span.start as usize);
         self.layout.text(format!("system {}", system.name.name));
         let head = system.span.end as usize;
-        let close = if self.source.opens(head) { self.source.braces(head).1 } else { head.saturating_sub(1) };
+        let braces = self.source.opens(head);
+        let close = if braces { self.source.braces(head).1 } else { head.saturating_sub(1) };
         match &system.kind {
             SystemKind::Plain => return self.items(system, close),
             SystemKind::GridRows(rows) => {
@@ -23,10 +24,10 @@ impl Printer<'_> {
             SystemKind::GridFile(file) => self.layout.text(format!(" = grid({})", quoted(&file.text))),
             SystemKind::Graph(file) => self.layout.text(format!(" = graph({})", quoted(&file.text))),
         }
-        if system.items.is_empty() {
-            self.layout.text(";");
-        } else {
+        if !system.items.is_empty() || braces && self.source.comments_before(close) > 0 {
             self.items(system, close);
+        } else {
+            self.semicolon(close);
         }
     }
 

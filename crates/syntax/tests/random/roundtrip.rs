@@ -12,7 +12,8 @@ pub fn without_places(tree: &impl std::fmt::Debug) -> String {
 }
 
 fn comments(text: &str) -> Vec<&str> {
-    text.lines().filter_map(comment).collect()
+    // A carriage return ends a line too.
+    text.split(['\n', '\r']).filter_map(comment).collect()
 }
 
 /// The comment of a line: it begins with the first `//` that is in no string.
