@@ -17,14 +17,27 @@ pub(crate) fn json(value: &impl Serialize) -> Outcome<String> {
 /// Width of messages. The same on every terminal, so that messages can be compared.
 pub(crate) const WIDTH: usize = 100;
 
+/// How many errors, and how many warnings, are shown as text.
+const SHOWN: usize = 100;
+
 /// Prints diagnostics on standard error: errors always, warnings unless they are not wanted.
 pub(crate) fn diagnostics(sources: &SourceMap, diagnostics: &[Diagnostic], out: &Output) {
     let (errors, warnings): (Vec<_>, Vec<_>) = diagnostics.iter().cloned().partition(Diagnostic::is_error);
     if !errors.is_empty() {
-        out.error(render(sources, &errors, out.color_errors, WIDTH).trim_end());
+        out.error(rendered(sources, &errors, "errors", out));
     }
     if !warnings.is_empty() {
-        out.remark(render(sources, &warnings, out.color_errors, WIDTH).trim_end());
+        out.remark(rendered(sources, &warnings, "warnings", out));
+    }
+}
+
+/// More of one kind than anybody reads are counted only.
+fn rendered(sources: &SourceMap, diagnostics: &[Diagnostic], what: &str, out: &Output) -> String {
+    let shown = &diagnostics[..diagnostics.len().min(SHOWN)];
+    let text = render(sources, shown, out.color_errors, WIDTH);
+    match diagnostics.len() - shown.len() {
+        0 => text.trim_end().to_owned(),
+        more => format!("{}\n\nand {more} more {what}", text.trim_end()),
     }
 }
 

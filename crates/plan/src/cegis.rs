@@ -30,6 +30,9 @@ pub(crate) struct Cegis<'s, 'a, 'c> {
     pub(crate) blocks: &'s [Vec<PathId>],
     /// Rounds of the outermost search.
     pub(crate) rounds: u32,
+    /// Checks of all searches, and after how many to give up.
+    pub(crate) checks: u32,
+    pub(crate) most_checks: Option<u32>,
     /// For the leading block, see [`Query::with_slack`].
     pub(crate) slack: Option<u32>,
     /// Whether the slack has lost nothing, so that nothing found means that there is nothing.
@@ -67,7 +70,16 @@ struct Round<'e, 'a> {
     against: Goal,
 }
 
-impl<'s, 'a> Cegis<'s, 'a, '_> {
+impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
+    /// A search without limits.
+    pub(crate) fn new(
+        encoder: &'s Encoder<'a>,
+        oracle: &'s mut Oracle<'c>,
+        blocks: &'s [Vec<PathId>],
+    ) -> Self {
+        Cegis { encoder, oracle, blocks, rounds: 0, checks: 0, most_checks: None, slack: None, exact: true }
+    }
+
     /// Paths of the block at `level` with which its player reaches the goal whatever the later blocks of the other
     /// player are; up to `many` different answers where no block follows, else at most one. Empty: none.
     /// Each answer has the paths known and those of the block.
@@ -84,6 +96,10 @@ impl<'s, 'a> Cegis<'s, 'a, '_> {
         loop {
             if level == 0 {
                 self.rounds += 1;
+            }
+            self.checks += 1;
+            if self.most_checks.is_some_and(|most| self.checks > most) {
+                return Err(Stop::Unknown(format!("no end after {} counterexamples", self.checks - 1)));
             }
             if !self.oracle.check(&mut round.dialogue, &round.query.script)? {
                 return Ok(found);
@@ -144,7 +160,14 @@ impl<'s, 'a> Cegis<'s, 'a, '_> {
         Ok(round)
     }
 
+    /// A model that satisfies its query describes paths. Where variables have no bounds, its numbers may be too large
+    /// for ours: instance by instance they can grow without end.
     fn no_path(&self, round: &Round<'_, 'a>) -> Stop {
+        let objective = self.encoder.objective;
+        if objective.paths.iter().any(|path| !self.encoder.problem.systems[path.system].is_finite()) {
+            let advice = "--quantifiers keep leaves the search to the solver";
+            return Stop::Unknown(format!("numbers in the search grew beyond 64 bits; {advice}"));
+        }
         self.oracle.wrong(&round.dialogue, "it describes no path").into()
     }
 

@@ -15,6 +15,9 @@ use std::time::Instant;
 /// others.
 const SLACKS: [Option<u32>; 2] = [Some(4), None];
 
+/// After so many checks a search over infinitely many choices is taken to have no end.
+const ENDLESS: u32 = 200;
+
 /// Decides an objective. A strategy (or counterexample) in the outcome has been verified, unless the configuration
 /// says not to.
 ///
@@ -144,17 +147,36 @@ fn search(
             if choice == Quantifiers::Auto {
                 outcome.quantifiers = Quantifiers::Cegis;
             }
-            let mut cegis = Cegis { encoder, oracle, blocks: &blocks, rounds: 0, slack, exact: true };
+            let patient = choice != Quantifiers::Auto || is_finite(encoder);
+            let mut cegis = Cegis::new(encoder, oracle, &blocks);
+            (cegis.slack, cegis.most_checks) = (slack, (!patient).then_some(ENDLESS));
             let known = vec![None; objective.paths.len()];
             let found = cegis.find(0, &known, &goal, 1);
             outcome.iterations += cegis.rounds;
-            (found?.pop(), cegis.exact)
+            let exact = cegis.exact;
+            match found {
+                // Numbers without bounds have infinitely many counterexamples; the solver may know better.
+                Err(Stop::Unknown(reason)) if !patient && !config.deadline.passed() => {
+                    outcome.quantifiers = Quantifiers::Keep;
+                    return match keep(encoder, config, oracle, &blocks, want) {
+                        // Not every solver takes every prefix of quantifiers.
+                        Err(Stop::Error(error)) if error.exit_code() == 2 => Err(Stop::Unknown(reason)),
+                        answer => answer,
+                    };
+                }
+                found => (found?.pop(), exact),
+            }
         };
         if found.is_some() || exact {
             return Ok(found);
         }
     }
     Ok(None)
+}
+
+/// Whether every path has finitely many states to be in.
+fn is_finite(encoder: &Encoder<'_>) -> bool {
+    encoder.objective.paths.iter().all(|path| encoder.problem.systems[path.system].is_finite())
 }
 
 /// One query with its quantifiers, for a solver that takes them.
@@ -264,7 +286,6 @@ fn defeated(encoder: &Encoder<'_>, config: &Config, strategy: &Strategy) -> Resu
     let formula = &objective.formula;
     let against = Goal::new(formula, want).opposed(formula);
     let mut oracle = Oracle::new(&own);
-    let mut cegis =
-        Cegis { encoder, oracle: &mut oracle, blocks: &blocks, rounds: 0, slack: None, exact: true };
+    let mut cegis = Cegis::new(encoder, &mut oracle, &blocks);
     Ok(!cegis.find(1, &known, &against, 1)?.is_empty())
 }

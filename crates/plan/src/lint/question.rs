@@ -149,14 +149,7 @@ fn search(problem: &Problem, question: &Objective, config: &Config) -> Result<Op
     let mut oracle = Oracle::new(config);
     no_dead_ends(&encoder, &mut oracle)?;
     let blocks = [question.paths.keys().collect::<Vec<_>>()];
-    let mut cegis = Cegis {
-        encoder: &encoder,
-        oracle: &mut oracle,
-        blocks: &blocks,
-        rounds: 0,
-        slack: None,
-        exact: true,
-    };
+    let mut cegis = Cegis::new(&encoder, &mut oracle, &blocks);
     let none = vec![None; question.paths.len()];
     Ok(cegis.find(0, &none, &Goal::new(&question.formula, true), 1)?.pop())
 }
