@@ -107,6 +107,12 @@ impl<'a> Asker<'a> {
         }
     }
 
+    /// Notes a question that was not asked.
+    pub(super) fn leave_open(&mut self, about: Span, what: &str) {
+        let message = format!("it is undecided whether {what}");
+        self.undecided.push(Diagnostic::warning("undecided", about, message));
+    }
+
     fn give_up(&mut self, stop: Stop, about: Span, what: &str) {
         let message = if self.undecided.len() < LISTED {
             let why = match stop {

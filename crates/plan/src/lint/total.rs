@@ -22,6 +22,16 @@ pub(super) fn total(system: &System) -> (System, VarId) {
     for clause in &mut total.clauses {
         clause.guard = also_free(&clause.guard);
     }
+    // What is listed has no guard to say "free".
+    if let Some(edges) = total.edges.take() {
+        total.clauses.extend(edges.iter().map(|(from, edge)| Clause {
+            actions: vec![edge.action],
+            guard: also_free(&at(edges.var, from)),
+            updates: vec![(edges.var, Update::Assign(Expr::Const(Value::Enum(edge.to))))],
+            span,
+            generated: true,
+        }));
+    }
     let set = |value| vec![(var, Update::Assign(Expr::Const(Value::Int(value))))];
     for &action in &system.actions {
         let cannot = Expr::Not(Box::new(enabled(system, action)));
@@ -40,10 +50,22 @@ pub(super) fn is(var: VarId, value: i64) -> Expr<Leaf> {
     Expr::Compare(Comparison::Eq, Box::new(Expr::Leaf(Leaf::Var(var))), Box::new(value))
 }
 
+/// That an enumeration has the value of this position.
+fn at(var: VarId, position: u32) -> Expr<Leaf> {
+    let value = Expr::Const(Value::Enum(position));
+    Expr::Compare(Comparison::Eq, Box::new(Expr::Leaf(Leaf::Var(var))), Box::new(value))
+}
+
 /// Where a system has a transition with that action.
 pub(super) fn enabled(system: &System, action: ActionId) -> Expr<Leaf> {
     let clauses = system.clauses.iter().filter(|c| c.actions.contains(&action));
     let mut ways: Vec<Expr<Leaf>> = clauses.map(|clause| possible(system, clause)).collect();
+    if let Some(edges) = &system.edges {
+        let own = edges.iter().filter(|(_, edge)| edge.action == action);
+        let mut sources: Vec<u32> = own.map(|(from, _)| from).collect();
+        sources.dedup();
+        ways.extend(sources.into_iter().map(|from| at(edges.var, from)));
+    }
     ways.push(system.absorb.clone());
     Expr::Or(ways)
 }

@@ -97,6 +97,11 @@ impl<'a> PathContext<'a> {
         }
         let message = format!("no label or variable `{name}` in system {}", system.name);
         let diagnostic = Diagnostic::error("unknown-name", span, message);
+        if self.actions.get(name).is_some() {
+            let p = &self.paths[path].name;
+            let help = format!("it is an action: write `action[{p}] == {name}` or `{name} in enabled[{p}]`");
+            return self.error(diagnostic.with_help(help));
+        }
         let labels = system.labels.iter().map(|label| label.name.as_str());
         let candidates = labels.chain(system.vars.iter().map(|var| var.name.as_str()));
         self.error(suggest(diagnostic, name, candidates))
@@ -200,6 +205,10 @@ impl Context for PathContext<'_> {
     }
 
     fn unknown(&mut self, name: &str, span: Span) -> Diagnostic {
+        if let Some(help) = special_help(name) {
+            let message = format!("`{name}` is read of a path: say of which");
+            return Diagnostic::error("missing-path", span, message).with_help(help);
+        }
         if self.is_read_of_paths(name) {
             let path = self.frame.paths.first().map_or("p", |(path, _)| path);
             let message = format!("`{name}` is read of a path: say of which");
@@ -223,6 +232,15 @@ impl Context for PathContext<'_> {
     }
 
     fn at(&mut self, name: &Ident, paths: &[Ident], span: Span) -> Typed<PathLeaf> {
+        if let [read] = paths
+            && self.frame.paths.iter().any(|(path, _)| *path == name.name)
+            && !self.frame.paths.iter().any(|(path, _)| *path == read.name)
+            && self.is_read_of_paths(&read.name)
+        {
+            let message = format!("`{}` is a path, and `{}` is read of it", name.name, read.name);
+            let help = format!("write `{}[{}]`", read.name, name.name);
+            return self.error(Diagnostic::error("unknown-name", span, message).with_help(help));
+        }
         let Some(path) = self.one_path(name, paths, span) else { return Typed::Poison };
         if let Some(help) = special_help(&name.name) {
             let message = format!("`{}[...]` is no value", name.name);
