@@ -145,3 +145,38 @@ fn plot_reads_strategies() {
     assert_eq!((run.status, run.stdout.as_str()), (0, ""), "{}", run.stderr);
     assert!(std::fs::read_to_string(drawn).expect("drawn").starts_with("<svg"));
 }
+
+/// Fractions are read and checked exactly, and no solver is needed for that.
+#[test]
+fn strategies_with_fractions_are_replayed() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let verify = |third: &str| {
+        let states = [
+            ("0", "0"),
+            ("0", "1.5"),
+            ("0.75", third),
+            ("\"11/12\"", third),
+            ("\"13/12\"", third),
+            ("1.25", third),
+            ("\"17/12\"", third),
+            ("\"19/12\"", third),
+        ];
+        let states = states.map(|(x, v)| format!("{{\"x\": {x}, \"v\": {v}}}")).join(", ");
+        let actions = ["thrust", "brake", "coast", "coast", "coast", "coast", "coast"];
+        let witness = format!("[{{\"path\": \"p\", \"actions\": {actions:?}, \"states\": [{states}]}}]");
+        let path = folder.path().join("given.json");
+        std::fs::write(&path, format!("{{\"objective\": \"brake\", \"witness\": {witness}}}"))
+            .expect("writable");
+        hyperplan(&["verify", "pass/reals.hp", text(&path)])
+    };
+    let run = verify("\"1/3\"");
+    assert_eq!(
+        (run.status, run.stdout.as_str()),
+        (0, "brake: the strategy holds, verified by search\n"),
+        "{}",
+        run.stderr
+    );
+    let run = verify("0.333333333");
+    assert_eq!(run.status, 1, "{}", run.stderr);
+    assert!(run.stdout.contains("no such transition at step 2"), "{}", run.stdout);
+}

@@ -58,7 +58,15 @@ impl Report {
                 ("fails", Some(defeat.describe(objective)), paths)
             }
             Verdict::TooLarge { reached, .. } => {
-                let reason = format!("too large to enumerate: gave up after {} joint moves", reached.moves);
+                let systems = objective.paths.iter().map(|path| &loaded.problem.systems[path.system]);
+                let unbounded = systems.into_iter().find(|system| !system.is_finite());
+                let reason = match unbounded {
+                    Some(system) => format!(
+                        "system {} has infinitely many paths that compete; this takes a solver, as in `solve`",
+                        system.name
+                    ),
+                    None => format!("too large to enumerate: gave up after {} joint moves", reached.moves),
+                };
                 ("unknown", Some(reason), None)
             }
         };
