@@ -425,7 +425,7 @@ fn value_of(ty: &Type, value: smt::Value) -> Option<Value> {
         (Type::Bool, value) => value.as_bool().map(Value::Bool),
         (Type::Real, smt::Value::Real(r)) => {
             let (numerator, denominator) = (r.numerator().try_into().ok()?, r.denominator().try_into().ok()?);
-            Some(Value::Real(Rational::new(numerator, denominator)))
+            Value::real(Rational::new(numerator, denominator))
         }
         (Type::Enum(_), _) => u32::try_from(integer()?).ok().map(Value::Enum),
         (Type::Range { .. } | Type::Int, _) => integer().map(Value::Int),

@@ -493,7 +493,7 @@ fn read_value(ty: &Type, value: &Scalar) -> Option<Value> {
         (Type::Bool, Scalar::Bool(b)) => Some(Value::Bool(*b)),
         (Type::Range { lo, hi }, Scalar::Int(n)) if (lo..=hi).contains(&n) => Some(Value::Int(*n)),
         (Type::Int, Scalar::Int(n)) => Some(Value::Int(*n)),
-        (Type::Real, Scalar::Int(n)) => Some(Value::Real(Rational::from(*n))),
+        (Type::Real, Scalar::Int(n)) => Value::real(Rational::from(*n)),
         (Type::Real, Scalar::Decimal(x)) => real(&x.to_string()),
         (Type::Real, Scalar::Name(text)) => real(text),
         (Type::Enum(names), Scalar::Name(name)) => {

@@ -65,12 +65,19 @@ pub enum Value {
 }
 
 impl Value {
+    /// A real number; `None` for the one numerator of 64 bits that has no negative, so that fractions can be turned
+    /// around and over without a thought.
+    #[must_use]
+    pub fn real(value: Rational) -> Option<Value> {
+        (*value.numer() != i64::MIN).then_some(Value::Real(value))
+    }
+
     /// The sum of two numbers of one type; `None` where it does not fit.
     #[must_use]
     pub fn checked_add(self, other: Value) -> Option<Value> {
         match (self, other) {
             (Value::Int(a), Value::Int(b)) => a.checked_add(b).map(Value::Int),
-            (Value::Real(a), Value::Real(b)) => a.checked_add(&b).map(Value::Real),
+            (Value::Real(a), Value::Real(b)) => a.checked_add(&b).and_then(Value::real),
             _ => None,
         }
     }
@@ -80,7 +87,7 @@ impl Value {
     pub fn checked_mul(self, other: Value) -> Option<Value> {
         match (self, other) {
             (Value::Int(a), Value::Int(b)) => a.checked_mul(b).map(Value::Int),
-            (Value::Real(a), Value::Real(b)) => a.checked_mul(&b).map(Value::Real),
+            (Value::Real(a), Value::Real(b)) => a.checked_mul(&b).and_then(Value::real),
             _ => None,
         }
     }
@@ -301,7 +308,7 @@ impl<L> Expr<L> {
             }
             Expr::Mul(c, a) => Value::Int(*c).checked_mul(a.evaluate(leaf)?),
             Expr::Scale(c, a) => Value::Real(*c).checked_mul(a.evaluate(leaf)?),
-            Expr::ToReal(a) => a.integer(leaf).map(|n| Value::Real(Rational::from(n))),
+            Expr::ToReal(a) => a.integer(leaf).and_then(|n| Value::real(Rational::from(n))),
             Expr::Div(a, c) => a.integer(leaf)?.checked_div_euclid(*c).map(Value::Int),
             Expr::Mod(a, c) => a.integer(leaf)?.checked_rem_euclid(*c).map(Value::Int),
             Expr::If(c, a, b) => if c.truth(leaf)? { a } else { b }.evaluate(leaf),

@@ -20,7 +20,7 @@ pub(crate) fn eval<L>(expr: &Expr<L>, leaf: &impl Fn(&L) -> Option<Value>) -> Op
         }
         Expr::Mul(c, a) => c.checked_mul(int(a, leaf)?).map(Value::Int),
         Expr::Scale(c, a) => Value::Real(*c).checked_mul(eval(a, leaf)?),
-        Expr::ToReal(a) => int(a, leaf).map(|n| Value::Real(n.into())),
+        Expr::ToReal(a) => int(a, leaf).and_then(|n| Value::real(n.into())),
         Expr::Div(a, c) => int(a, leaf)?.checked_div_euclid(*c).map(Value::Int),
         Expr::Mod(a, c) => int(a, leaf)?.checked_rem_euclid(*c).map(Value::Int),
         Expr::If(c, a, b) => match truth(c, leaf) {

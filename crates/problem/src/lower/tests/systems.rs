@@ -193,6 +193,12 @@ fn mistakes_in_systems() {
         ("state x: int, y: int; label a = x * y == 0;", "nonlinear", "x * y"),
         ("state x: real, y: real; label a = x / y == 0;", "bad-divisor", "y"),
         ("state x: real; label a = x / 0 == 0;", "bad-divisor", "0"),
+        // -2^63 has no negative.
+        (
+            "state x: real; label a = 1 / (-2147483648.0 * 4294967296) == x;",
+            "number-too-large",
+            "-2147483648.0 * 4294967296",
+        ),
         ("state x: int; on step { x' = x + 0.5; }", "type-mismatch", "x + 0.5"),
         ("state x: bool; on step { x' in 0..1; }", "type-mismatch", "0..1"),
         ("state x: real; on step { x' in 1..0.5; }", "empty-range", "1..0.5"),
