@@ -1,8 +1,8 @@
 //! The paper's five case studies against least horizons that were found by explicit search, not by a solver.
 
-use hyperplan_plan::{Config, Quantifiers, States, Verdict, Verified, solve};
+use hyperplan_plan::{Config, Quantifiers, Verdict, Verified, solve};
 use hyperplan_problem::{Overrides, Problem, read};
-use hyperplan_solver::{Deadline, Spec, discover};
+use hyperplan_solver::{Spec, discover};
 use hyperplan_syntax::SourceMap;
 use hyperplan_tests::say;
 use std::path::{Path, PathBuf};
@@ -45,16 +45,7 @@ fn check(
     realizable: bool,
 ) {
     let problem = problem(objective, size, horizon);
-    let config = Config {
-        solver: solver.clone(),
-        quantifiers,
-        states: States::Auto,
-        deadline: Deadline::never(),
-        verify: true,
-        seed: 0,
-        memory_mib: None,
-        queries: None,
-    };
+    let config = Config { quantifiers, ..Config::new(solver.clone()) };
     let what = format!("{objective}-{size}, T = {horizon}, {solver:?}, {quantifiers}");
     let outcome = solve(&problem, &problem.objectives[0], &config).unwrap_or_else(|e| panic!("{what}: {e}"));
     let expected = if realizable { Verdict::Realizable } else { Verdict::Unrealizable };

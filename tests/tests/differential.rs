@@ -163,16 +163,8 @@ fn answer(
     quantifiers: Quantifiers,
     states: States,
 ) -> Result<Outcome, Error> {
-    let config = Config {
-        solver: solver.clone(),
-        quantifiers,
-        states,
-        deadline: Deadline::after(Duration::from_secs(60)),
-        verify: true,
-        seed: 0,
-        memory_mib: None,
-        queries: None,
-    };
+    let deadline = Deadline::after(Duration::from_secs(60));
+    let config = Config { quantifiers, states, deadline, ..Config::new(solver.clone()) };
     solve(problem, objective, &config)
 }
 

@@ -70,16 +70,8 @@ fn graphs_are_decided_as_brute_force_does() {
         assert_eq!(decide(&typed, objective, &Budget::default()), Ok(Some(expected)), "{}", context());
         for quantifiers in [Quantifiers::Auto, Quantifiers::Cegis, Quantifiers::Expand] {
             for states in [States::Onehot, States::Bitvec] {
-                let config = Config {
-                    solver: Spec::Builtin,
-                    quantifiers,
-                    states,
-                    deadline: Deadline::after(Duration::from_secs(60)),
-                    verify: true,
-                    seed: 0,
-                    memory_mib: None,
-                    queries: None,
-                };
+                let deadline = Deadline::after(Duration::from_secs(60));
+                let config = Config { quantifiers, states, deadline, ..Config::new(Spec::Builtin) };
                 let way = format!("--quantifiers {quantifiers} --states {states}");
                 // A witness was checked by then.
                 match solve(&typed, objective, &config) {

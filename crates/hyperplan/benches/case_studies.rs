@@ -3,9 +3,9 @@
 //! The largest size is 40 unless `HYPERPLAN_BENCH_SIZE` says otherwise.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use hyperplan_plan::{Config, Quantifiers, States, Verdict, solve};
+use hyperplan_plan::{Config, Verdict, solve};
 use hyperplan_problem::{Overrides, Problem, read};
-use hyperplan_solver::{Deadline, Spec};
+use hyperplan_solver::Spec;
 use hyperplan_syntax::SourceMap;
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
@@ -31,16 +31,7 @@ fn case_studies(criterion: &mut Criterion) {
 }
 
 fn config() -> Config {
-    Config {
-        solver: Spec::Builtin,
-        quantifiers: Quantifiers::Auto,
-        states: States::Auto,
-        deadline: Deadline::never(),
-        verify: true,
-        seed: 0,
-        memory_mib: None,
-        queries: None,
-    }
+    Config::new(Spec::Builtin)
 }
 
 fn load(name: &str) -> Problem {

@@ -97,6 +97,23 @@ pub struct Config {
     pub queries: Option<PathBuf>,
 }
 
+impl Config {
+    /// All choices left to hyperplan, no limits, strategies verified.
+    #[must_use]
+    pub fn new(solver: Spec) -> Self {
+        Config {
+            solver,
+            quantifiers: Quantifiers::Auto,
+            states: States::Auto,
+            deadline: Deadline::never(),
+            verify: true,
+            seed: 0,
+            memory_mib: None,
+            queries: None,
+        }
+    }
+}
+
 /// How to emit.
 #[derive(Clone, Debug)]
 pub struct EmitConfig {

@@ -1,9 +1,9 @@
 //! The least value of a constant against brute force: random problems in which bounds grow with the constant.
 
 use super::{lowered, seeds, wrong};
-use hyperplan_plan::{Config, Least, Quantifiers, States, Verdict, minimize};
+use hyperplan_plan::{Config, Least, Quantifiers, Verdict, minimize};
 use hyperplan_problem as typed;
-use hyperplan_solver::{Deadline, Spec};
+use hyperplan_solver::Spec;
 use hyperplan_tests::brute::Brute;
 use hyperplan_tests::model::{Formula, Interval, Problem};
 use hyperplan_tests::random::{Random, problem};
@@ -89,16 +89,7 @@ fn verdicts(problem: &Problem, growth: &Growth) -> Option<Vec<bool>> {
 }
 
 fn least(problem: &Problem, growth: &Growth, quantifiers: Quantifiers) -> Least {
-    let config = Config {
-        solver: Spec::Builtin,
-        quantifiers,
-        states: States::Auto,
-        deadline: Deadline::never(),
-        verify: true,
-        seed: 0,
-        memory_mib: None,
-        queries: None,
-    };
+    let config = Config { quantifiers, ..Config::new(Spec::Builtin) };
     let name = lowered(&problem.to_string()).objectives[0].name.clone();
     let mut family = |value: i64| -> Result<typed::Problem, Infallible> {
         let value = u32::try_from(value).expect("a value of the range");

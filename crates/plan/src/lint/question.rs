@@ -1,7 +1,7 @@
 //! Questions: whether some paths, all chosen freely, satisfy a formula.
 
 use crate::cegis::{Assignment, Cegis};
-use crate::config::{Config, Error, Quantifiers, States};
+use crate::config::{Config, Error};
 use crate::oracle::{Oracle, Stop};
 use crate::prepare::{no_dead_ends, without_paths};
 use hyperplan_encode::{self as encode, Encoder, Goal, Limits};
@@ -95,16 +95,8 @@ impl<'a> Asker<'a> {
     }
 
     fn config(&self) -> Config {
-        Config {
-            solver: self.solver.clone(),
-            quantifiers: Quantifiers::Auto,
-            states: States::Auto,
-            deadline: self.deadline.within(self.each),
-            verify: false,
-            seed: 0,
-            memory_mib: None,
-            queries: None,
-        }
+        let deadline = self.deadline.within(self.each);
+        Config { deadline, verify: false, ..Config::new(self.solver.clone()) }
     }
 
     /// Notes a question that was not asked.
