@@ -367,6 +367,11 @@ impl<'a> Encoder<'a> {
         self.objective.paths[p].system == self.objective.paths[q].system
     }
 
+    /// Whether the formula compares actions or states of two paths.
+    fn ties(&self, first: PathId, second: PathId) -> bool {
+        [self.tied_before(second), self.compared_before(second)].iter().any(|ties| ties.contains(&first))
+    }
+
     /// The paths quantified before this one whose actions the formula compares with its own.
     fn tied_before(&self, path: PathId) -> Vec<PathId> {
         self.partners(path, |leaf| match *leaf {

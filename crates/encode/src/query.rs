@@ -5,7 +5,7 @@ use crate::explicit::{Building, ExplicitPath, FixedPath, Instances, Names};
 use crate::goal::Goal;
 use crate::inputs::{Move, Start};
 use crate::path::{Instance, Known, Path, Shape};
-use crate::reach::{Layers, Question, layers};
+use crate::reach::{self, Layers, Question};
 use crate::sweep::{Sweep, sweep};
 use crate::symbolic::{Builder, SymbolicPath};
 use crate::unroll::Unroller;
@@ -31,7 +31,11 @@ pub struct Query<'e, 'a> {
     declared: FxHashMap<PathId, Rc<Layers>>,
     /// See [`Query::with_slack`].
     slack: Option<u32>,
-    /// Whether the slack has lost runs.
+    /// A time before which no choice of the leading block owes nothing but safety.
+    least: u32,
+    /// See [`Query::one_run`].
+    one_run: bool,
+    /// Whether runs have been lost that the goal does not exclude.
     lossy: Cell<bool>,
     instances: Instances,
     /// How many copies of each path variable there are, for names.
@@ -64,6 +68,8 @@ impl<'e, 'a> Query<'e, 'a> {
             layers: FxHashMap::default(),
             declared: FxHashMap::default(),
             slack: None,
+            least: 0,
+            one_run: false,
             lossy: Cell::new(false),
             instances: Instances::default(),
             copies: FxHashMap::default(),
@@ -78,12 +84,20 @@ impl<'e, 'a> Query<'e, 'a> {
         self
     }
 
+    /// Allows [`Query::explore_block`] to keep one run where that decides. What is found is right; that nothing is
+    /// found says nothing.
+    #[must_use]
+    pub fn one_run(mut self, allowed: bool) -> Self {
+        self.one_run = allowed;
+        self
+    }
+
     /// Lifts [`Query::with_slack`] for the paths to come.
     pub fn lift_slack(&mut self) {
         self.slack = None;
     }
 
-    /// Whether no run was lost by [`Query::with_slack`], so that nothing found means that there is nothing.
+    /// Whether no run was lost by [`Query::with_slack`] or [`Query::one_run`], so that nothing found means that there is nothing.
     #[must_use]
     pub fn is_exact(&self) -> bool {
         !self.lossy.get()
@@ -110,10 +124,56 @@ impl<'e, 'a> Query<'e, 'a> {
         if let Some(known) = self.layers.get(&key) {
             return Ok(known.clone());
         }
-        let alone = self.explore(path, goal, &self.fixed)?;
-        let found = Rc::new(self.explore_beside(path, goal, &alone).unwrap_or(alone));
+        // With a slack there is little to explore alone; without, little beside a path that has been declared.
+        let beside = self.slack.is_none().then(|| self.explore_beside(path, goal, None)).flatten();
+        let found = match beside {
+            Some(found) => found,
+            None => {
+                let alone = self.explore(path, goal, &self.fixed)?;
+                self.explore_beside(path, goal, Some(&alone)).unwrap_or(alone)
+            }
+        };
+        let found = Rc::new(found);
         self.layers.insert(key, found.clone());
         Ok(found)
+    }
+
+    /// Explores the paths of the leading block, together where the formula ties two. Where nothing else is read,
+    /// [`Query::one_run`] may leave one run.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] where too much can matter.
+    pub fn explore_block(&mut self, block: &[PathId], goal: &Goal) -> Result<(), Error> {
+        if self.encoder.states != States::Onehot {
+            return Ok(());
+        }
+        if self.slack.is_some() && block.len() > 1 {
+            for &path in block {
+                self.least = self.least.max(reach::least(&self.question([path], goal, &self.fixed))?);
+            }
+        }
+        let (_, rest) = goal.split(&self.encoder.objective.formula, &|path| block.contains(&path));
+        let one_run = self.one_run && rest.is_empty();
+        match *block {
+            [path] if one_run => {
+                let question = self.question([path], goal, &self.fixed);
+                let found = reach::layers(&question, true)?;
+                self.layers.insert((path, goal.clone()), Rc::new(found));
+            }
+            [first, second] if self.encoder.ties(first, second) => {
+                let alone =
+                    [self.explore(first, goal, &self.fixed)?, self.explore(second, goal, &self.fixed)?];
+                let mut question = self.question([first, second], goal, &self.fixed);
+                question.within = [Some(&alone[0]), Some(&alone[1])];
+                question.budget = self.encoder.limits.pairs;
+                let Ok(found) = reach::pair_layers(&question, one_run) else { return self.encoder.go_on() };
+                for (path, found) in [first, second].into_iter().zip(found) {
+                    self.layers.insert((path, goal.clone()), Rc::new(found));
+                }
+            }
+            _ => {}
+        }
+        Ok(())
     }
 
     /// Whether it is plain that no choice of the leading block's paths reaches its player's goal: nothing of some path
@@ -125,9 +185,10 @@ impl<'e, 'a> Query<'e, 'a> {
         if self.encoder.states != States::Onehot {
             return Ok(false);
         }
+        self.explore_block(block, goal)?;
         for &path in block {
             let layers = self.layers(path, goal)?;
-            if layers.at.iter().any(Vec::is_empty) {
+            if layers.is_empty() {
                 return Ok(true);
             }
             self.declared.entry(path).or_insert(layers);
@@ -135,36 +196,40 @@ impl<'e, 'a> Query<'e, 'a> {
         Ok(false)
     }
 
-    fn explore(&self, path: PathId, goal: &Goal, fixed: &[Option<FixedPath>]) -> Result<Layers, Error> {
-        let [found] = layers(&Question {
+    fn question<'q, const N: usize>(
+        &'q self,
+        paths: [PathId; N],
+        goal: &'q Goal,
+        fixed: &'q [Option<FixedPath>],
+    ) -> Question<'q, N> {
+        Question {
             encoder: self.encoder,
-            paths: [path],
-            within: [None],
+            paths,
+            within: [None; N],
             goal,
             fixed,
+            declared: &self.declared,
             slack: self.slack,
+            least: self.least,
             lossy: &self.lossy,
             budget: self.encoder.limits.layer_states,
-        })?;
-        Ok(found)
+        }
+    }
+
+    fn explore(&self, path: PathId, goal: &Goal, fixed: &[Option<FixedPath>]) -> Result<Layers, Error> {
+        reach::layers(&self.question([path], goal, fixed), false)
     }
 
     /// `None` where there is no such other path, or too many pairs.
-    fn explore_beside(&self, path: PathId, goal: &Goal, alone: &Layers) -> Option<Layers> {
+    fn explore_beside(&self, path: PathId, goal: &Goal, alone: Option<&Layers>) -> Option<Layers> {
         let encoder = self.encoder;
         let partners = encoder.tied_before(path).into_iter().chain(encoder.compared_before(path));
         let (other, beside) = partners.into_iter().find_map(|p| Some((p, self.declared.get(&p)?)))?;
-        let [_, found] = layers(&Question {
-            encoder,
-            paths: [other, path],
-            within: [Some(beside), Some(alone)],
-            goal,
-            fixed: &self.fixed,
-            slack: None,
-            lossy: &self.lossy,
-            budget: encoder.limits.pairs,
-        })
-        .ok()?;
+        let mut question = self.question([other, path], goal, &self.fixed);
+        question.within = [Some(beside), alone];
+        question.slack = None;
+        question.budget = encoder.limits.pairs;
+        let [_, found] = reach::pair_layers(&question, false).ok()?;
         Some(found)
     }
 

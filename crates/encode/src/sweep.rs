@@ -26,7 +26,7 @@ use std::collections::BTreeMap;
 /// More conditions than this on one move are left to other methods: each doubles the clauses.
 const MAX_CONDITIONS: usize = 3;
 
-/// Residuals beyond which the pairs are left to other methods.
+/// Residuals of one time beyond which the pairs are left to other methods.
 const MAX_RESIDUALS: usize = 512;
 
 /// What a sweep is about.
@@ -63,7 +63,11 @@ pub(crate) fn sweep(sweep: &Sweep<'_, '_>, script: &mut Script) -> Option<()> {
     for time in 0..=runs.horizon {
         runs.settle(script, time, std::mem::take(&mut ways), &mut frontier);
         total += frontier.len();
-        if total > sweep.encoder.limits.swept || runs.residuals.len() > MAX_RESIDUALS {
+        if total > sweep.encoder.limits.swept || runs.residuals.len() > sweep.encoder.limits.residuals {
+            return None;
+        }
+        let residuals: Vec<Residual> = frontier.keys().map(|pair| pair.0).collect();
+        if residuals.chunk_by(|a, b| a == b).count() > MAX_RESIDUALS {
             return None;
         }
         if (sweep.encoder.stop)() {

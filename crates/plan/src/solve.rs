@@ -11,9 +11,9 @@ use hyperplan_solver::Spec;
 use hyperplan_verify as verify;
 use std::time::Instant;
 
-/// Runs that are hardly longer than the shortest make small queries, so they are tried first; then all, if there are
-/// others.
-const SLACKS: [Option<u32>; 2] = [Some(4), None];
+/// Runs that are hardly longer than the shortest make small queries, so they are tried first; then longer ones, and
+/// then all, if there are others.
+const SLACKS: [Option<u32>; 4] = [Some(4), Some(16), Some(64), None];
 
 /// After so many checks a search over infinitely many choices is taken to have no end.
 const ENDLESS: u32 = 200;
@@ -150,6 +150,7 @@ fn search(
             let patient = choice != Quantifiers::Auto || is_finite(encoder);
             let mut cegis = Cegis::new(encoder, oracle, &blocks);
             (cegis.slack, cegis.most_checks) = (slack, (!patient).then_some(ENDLESS));
+            cegis.one_run = slack.is_some() && config.quantifiers == Quantifiers::Auto;
             let known = vec![None; objective.paths.len()];
             let found = cegis.find(0, &known, &goal, 1);
             outcome.iterations += cegis.rounds;
