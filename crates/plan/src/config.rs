@@ -2,7 +2,7 @@
 
 use hyperplan_encode as encode;
 use hyperplan_problem::{PathId, Strategy};
-use hyperplan_solver::{self as solver, Deadline, Identity, Spec};
+use hyperplan_solver::{self as solver, Deadline, Identity, Size, Spec};
 use std::fmt;
 use std::path::PathBuf;
 use typed_index_collections::TiVec;
@@ -179,6 +179,8 @@ pub struct Outcome {
     pub states: States,
     /// Rounds: checks of the outermost query.
     pub iterations: u32,
+    /// The largest query, as the solver got it.
+    pub size: Size,
     /// Where the time went.
     pub seconds: Seconds,
     /// What the user should know besides.

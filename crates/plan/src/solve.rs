@@ -7,7 +7,7 @@ use crate::oracle::{Oracle, Stop};
 use crate::prepare::{blocks, decided, no_dead_ends, without_paths};
 use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Limits};
 use hyperplan_problem::{Objective, PathId, Problem, Quantifier, Strategy};
-use hyperplan_solver::Spec;
+use hyperplan_solver::{Size, Spec};
 use hyperplan_verify as verify;
 use std::time::Instant;
 
@@ -62,6 +62,7 @@ pub(crate) fn solve_sharing(
     outcome.seconds =
         Seconds { encode: (total - oracle.solving).max(0.0), solve: oracle.solving, verify: 0.0 };
     outcome.solver = oracle.identity();
+    outcome.size = oracle.largest;
     match answer {
         Err(Stop::Error(Error::Encode(encode::Error::Interrupted))) => {
             outcome.reason = Some(config.deadline.reason().to_owned());
@@ -111,6 +112,7 @@ fn unknown(objective: &Objective, encoder: &Encoder<'_>, config: &Config) -> Out
         quantifiers,
         states: States::from(encoder.states),
         iterations: 0,
+        size: Size::default(),
         seconds: Seconds::default(),
         notes: Vec::new(),
     }

@@ -19,4 +19,4 @@ pub use error::Error;
 #[doc(hidden)]
 pub use external::understand_output;
 pub use external::{Found, discover};
-pub use session::{Answer, Identity, Options, Session, Spec, open};
+pub use session::{Answer, Identity, Options, Session, Size, Spec, open};

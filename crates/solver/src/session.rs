@@ -29,6 +29,15 @@ pub struct Identity {
     pub version: String,
 }
 
+/// How much a solver was told.
+#[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug, Default)]
+pub struct Size {
+    /// Assertions; of the embedded engine, the clauses that they became.
+    pub clauses: usize,
+    /// Declared symbols; of the embedded engine, the SAT variables.
+    pub variables: usize,
+}
+
 /// A dialogue with a solver about one growing script.
 pub trait Session {
     /// Feeds what is new in the script since the last call, then asks whether it is satisfiable
@@ -47,6 +56,9 @@ pub trait Session {
 
     /// Who answers.
     fn identity(&self) -> Identity;
+
+    /// How much it was told up to the last check.
+    fn size(&self) -> Size;
 }
 
 /// Which solver to use.

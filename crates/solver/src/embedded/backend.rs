@@ -1,10 +1,11 @@
 //! The SAT solvers behind rustsat: CaDiCaL, or batsat where there is only Rust.
 
-use rustsat::solvers::{Solve, SolveIncremental, SolverResult};
+use rustsat::solvers::{Solve, SolveIncremental, SolveStats, SolverResult};
 use rustsat::types::{Cl, Lit, TernaryVal};
 
 use crate::deadline::Deadline;
 use crate::error::Error;
+use crate::session::Size;
 
 #[cfg(feature = "cadical")]
 type Sat = rustsat_cadical::CaDiCaL<'static, 'static>;
@@ -25,6 +26,11 @@ impl Backend {
     /// Which solver this is: name and version.
     pub(super) fn signature(&self) -> &'static str {
         self.sat.signature()
+    }
+
+    /// How much it holds.
+    pub(super) fn size(&self) -> Size {
+        Size { clauses: self.sat.n_clauses(), variables: self.sat.n_vars() }
     }
 
     /// Adds a clause. A failure is kept until the next solve.

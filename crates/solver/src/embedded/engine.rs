@@ -7,7 +7,7 @@ use super::bits::Gates;
 use super::cnf::Cnf;
 use crate::deadline::Deadline;
 use crate::error::Error;
-use crate::session::{Answer, Identity, Options, Quantifiers, Session};
+use crate::session::{Answer, Identity, Options, Quantifiers, Session, Size};
 use crate::transcript::{cannot_keep, numbered};
 
 /// How many assertions are encoded between two looks at the clock.
@@ -139,5 +139,9 @@ impl Session for Engine {
 
     fn identity(&self) -> Identity {
         Identity { name: "builtin".to_owned(), version: self.version.clone() }
+    }
+
+    fn size(&self) -> Size {
+        self.cnf.gates.sat.size()
     }
 }

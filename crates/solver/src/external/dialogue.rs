@@ -12,7 +12,7 @@ use super::profile::{Profile, profile};
 use super::reply::{self, Meaning};
 use crate::deadline::Deadline;
 use crate::error::Error;
-use crate::session::{Answer, Identity, Options, Quantifiers, Session};
+use crate::session::{Answer, Identity, Options, Quantifiers, Session, Size};
 use crate::transcript::Transcript;
 
 /// How much text is gathered before it is sent.
@@ -99,6 +99,7 @@ struct Dialogue {
     running: Option<Running>,
     deadline: Deadline,
     has_model: bool,
+    told: Size,
 }
 
 /// What belongs to one process.
@@ -124,7 +125,8 @@ impl Running {
 impl Dialogue {
     fn new(program: Program, options: &Options) -> Dialogue {
         let options = options.clone();
-        Dialogue { program, options, running: None, deadline: Deadline::never(), has_model: false }
+        let deadline = Deadline::never();
+        Dialogue { program, options, running: None, deadline, has_model: false, told: Size::default() }
     }
 
     fn name(&self) -> String {
@@ -332,6 +334,7 @@ impl Session for Dialogue {
             _ => self.start()?,
         };
         self.feed(&mut running, script, &assumptions, deadline);
+        self.told = Size { clauses: running.fed, variables: running.printer.declared() };
         // On an error or at the deadline the process is dropped, which kills it.
         match self.answer(&mut running, deadline)? {
             Some(answer) => {
@@ -360,6 +363,10 @@ impl Session for Dialogue {
         let program = &self.program;
         let version = program.version.get_or_init(|| version(&program.path).unwrap_or_default());
         Identity { name: program.name.clone(), version: version.clone() }
+    }
+
+    fn size(&self) -> Size {
+        self.told
     }
 }
 
