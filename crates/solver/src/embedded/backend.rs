@@ -1,11 +1,10 @@
 //! The SAT solvers behind rustsat: CaDiCaL, or batsat where there is only Rust.
 
-use rustsat::solvers::{Solve, SolveIncremental, SolveStats, SolverResult};
+use rustsat::solvers::{Solve, SolveIncremental, SolverResult};
 use rustsat::types::{Cl, Lit, TernaryVal};
 
 use crate::deadline::Deadline;
 use crate::error::Error;
-use crate::session::Size;
 
 #[cfg(feature = "cadical")]
 type Sat = rustsat_cadical::CaDiCaL<'static, 'static>;
@@ -15,12 +14,14 @@ type Sat = rustsat_batsat::BasicSolver;
 /// An incremental SAT solver that stops at a deadline.
 pub(super) struct Backend {
     sat: Sat,
+    /// How many clauses were added; what the solver makes of them is its own affair.
+    pub(super) clauses: usize,
     failure: Option<Error>,
 }
 
 impl Backend {
     pub(super) fn new(seed: u64) -> Result<Backend, Error> {
-        Ok(Backend { sat: seeded(seed)?, failure: None })
+        Ok(Backend { sat: seeded(seed)?, clauses: 0, failure: None })
     }
 
     /// Which solver this is: name and version.
@@ -28,13 +29,9 @@ impl Backend {
         self.sat.signature()
     }
 
-    /// How much it holds.
-    pub(super) fn size(&self) -> Size {
-        Size { clauses: self.sat.n_clauses(), variables: self.sat.n_vars() }
-    }
-
     /// Adds a clause. A failure is kept until the next solve.
     pub(super) fn clause(&mut self, literals: &[Lit]) {
+        self.clauses += 1;
         if let Err(error) = self.sat.add_clause_ref(Cl::new(literals)) {
             self.failure.get_or_insert(engine_error(&error));
         }

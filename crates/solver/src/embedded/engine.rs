@@ -142,6 +142,6 @@ impl Session for Engine {
     }
 
     fn size(&self) -> Size {
-        self.cnf.gates.sat.size()
+        self.cnf.gates.size()
     }
 }
