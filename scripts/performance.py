@@ -28,7 +28,7 @@ def main() -> None:
         sys.exit(f"these maps do not follow their rule: {', '.join(wrong)}" if wrong else 0)
     with tempfile.TemporaryDirectory() as folder:
         context = prepared(arguments, pathlib.Path(folder))
-        write = publisher(context, arguments.out)
+        write = publisher(context, arguments.out, arguments.note)
         context.publish = write
         write()
         picture = arguments.out.with_name(arguments.out.stem + "-growth.svg")
@@ -76,6 +76,7 @@ def parsed() -> argparse.Namespace:
         metavar="SECTION,...",
         help="sections that take long: cold builds, and the profile with the functions that perf sees",
     )
+    add("--note", default="", metavar="TEXT", help="what else a reader should know, such as what else was running")
     add("--check-maps", action="store_true", help="only check that the committed maps follow their rules")
     arguments = parser.parse_args()
     if arguments.only is None:
@@ -125,10 +126,10 @@ def prepared(arguments: argparse.Namespace, folder: pathlib.Path) -> Context:
     )
 
 
-def publisher(context: Context, file: pathlib.Path) -> Callable[[], None]:
+def publisher(context: Context, file: pathlib.Path, note: str) -> Callable[[], None]:
     """A function that writes the page as far as it is known."""
     template = string.Template((pathlib.Path(__file__).parent / "bench" / "performance.md").read_text("utf-8"))
-    about = machine.description(context.binary)
+    about = machine.description(context.binary) + (f"- note: {note}\n" if note else "")
     times = "one run" if context.runs == 1 else f"{context.runs} runs"
 
     def write() -> None:
