@@ -68,7 +68,7 @@ def builds(context: Context) -> None:
 
 def profile(context: Context) -> None:
     """The share of each stage, and with perf the functions that take most."""
-    header = ["objective", "size", *STAGES, "rest", "total"]
+    header = ["objective", "size", *STAGES, "rest", "wall"]
     rows: list[list[str]] = []
     functions: list[str] = []
     for size in (n for n in PROFILED if n in context.sizes):
