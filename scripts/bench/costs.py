@@ -98,7 +98,8 @@ def hottest(context: Context, objective: str, size: int, file: pathlib.Path) -> 
     run.once(record, context.timeout + GRACE)
     report = [perf, "report", "-i", str(data), "--stdio", "--percent-limit", "2", "--sort", "symbol", "-q"]
     listed = run.once(report, 300.0)
-    lines = [line.strip() for line in listed.output.splitlines() if "%" in line]
+    # perf pads lines, and some versions add empty columns.
+    lines = [line.strip(" -") for line in listed.output.splitlines() if "%" in line]
     if listed.problem or not lines:
         return title + "perf could not be used\n\n"
     return title + "\n\n```\n" + "\n".join(line[:110] for line in lines[:8]) + "\n```\n\n"
