@@ -1,9 +1,11 @@
 """A log-log chart as SVG. Series differ in marker and dashes, so that it can be read without colour."""
 
 import dataclasses
+import itertools
 import math
 
 WIDTH, HEIGHT = 760, 520
+FONT = 'font-family="sans-serif" font-size="12"'
 LEFT, RIGHT, TOP, BOTTOM = 70, 150, 40, 60
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#333333", "#e69f00")
 DASHES = ("", "8 4", "2 3", "8 3 2 3", "14 4", "5 5")
@@ -87,7 +89,7 @@ def apart(wanted: list[float], distance: float) -> list[float]:
     """Heights near the wanted ones that are so far apart."""
     order = sorted(range(len(wanted)), key=lambda i: wanted[i])
     placed = list(wanted)
-    for before, after in zip(order, order[1:]):
+    for before, after in itertools.pairwise(order):
         placed[after] = max(placed[after], placed[before] + distance)
     return placed
 
@@ -117,8 +119,7 @@ def draw(title: str, labels: tuple[str, str], every: list[Series]) -> str:
     x = Axis([a for a, _ in points], LEFT, WIDTH - RIGHT)
     y = Axis([b for _, b in points], HEIGHT - BOTTOM, TOP)
     parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" '
-        'font-family="sans-serif" font-size="12">',
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" {FONT}>',
         f"<title>{title}</title>",
         f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>',
         f'<text x="{LEFT}" y="22" font-size="14">{title}</text>',
