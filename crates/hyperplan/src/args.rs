@@ -147,7 +147,7 @@ pub(crate) struct Solve {
     /// `builtin`, `z3`, `cvc5`, `yices`, or a command line
     #[arg(long, value_name = "SOLVER", default_value = "builtin")]
     pub(crate) solver: String,
-    /// Most memory of a solver
+    /// Most memory of a solver; the builtin one stops when hyperplan itself has grown by so much
     #[arg(long, value_name = "MIB")]
     pub(crate) memory: Option<u64>,
     /// Finds the least value of a constant, such as T, for which the objective is realizable, and proves that
@@ -166,7 +166,7 @@ pub(crate) struct Solve {
     /// Prints the strategy unchecked
     #[arg(long)]
     pub(crate) no_verify: bool,
-    /// Seed of the solver
+    /// Seed of the solver; the same seed gives the same answer where no limit is reached
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) seed: u64,
 }

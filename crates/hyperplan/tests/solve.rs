@@ -187,6 +187,42 @@ fn time_runs_out() {
 }
 
 #[test]
+fn memory_runs_out() {
+    let run = hyperplan(&["solve", "case-studies/ar-60.hp", "--memory", "1", "--format", "json"]);
+    assert_eq!(run.status, 3, "{}", run.stderr);
+    assert_eq!(run.json()[0]["reason"], "memory limit of 1 MiB reached");
+}
+
+#[test]
+fn the_same_seed_gives_the_same_answer() {
+    for objective in ["sp", "isr", "ar", "iso", "cso"] {
+        for (quantifiers, seed) in [("auto", "0"), ("auto", "7"), ("cegis", "0"), ("cegis", "7")] {
+            let file = format!("case-studies/{objective}-10.hp");
+            let answer = |timeout: &str| {
+                let run = hyperplan(&[
+                    "solve",
+                    &file,
+                    "--format",
+                    "json",
+                    "--quantifiers",
+                    quantifiers,
+                    "--seed",
+                    seed,
+                    "--timeout",
+                    timeout,
+                ]);
+                let mut answer = run.json().remove(0);
+                answer.as_object_mut().expect("an object").remove("seconds").expect("the time it took");
+                answer
+            };
+            let first = answer("600");
+            assert_eq!(first["verdict"], "realizable", "{file}");
+            assert_eq!(first, answer("1200"), "{file}, {quantifiers}, seed {seed}");
+        }
+    }
+}
+
+#[test]
 fn a_missing_solver_is_named() {
     let run = hyperplan(&["solve", "rooms.hp", "--objective", "sp", "--solver", "/no/such/solver"]);
     assert_eq!((run.status, run.stdout.as_str()), (4, ""), "{}", run.stderr);

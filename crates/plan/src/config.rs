@@ -91,7 +91,7 @@ pub struct Config {
     pub verify: bool,
     /// Seed of the solver.
     pub seed: u64,
-    /// Memory limit of each solver process, in MiB.
+    /// Memory limit of each solver process, in MiB; for the embedded engine, how much this process may grow.
     pub memory_mib: Option<u64>,
     /// Where every query sent is kept.
     pub queries: Option<PathBuf>,

@@ -125,7 +125,8 @@ pub struct Options {
     pub nested: bool,
     /// More than one check will be asked for.
     pub incremental: bool,
-    /// Memory limit of a solver process, in MiB. The embedded engine shares our memory and has none.
+    /// Memory limit of a solver process, in MiB. Of the embedded engine, which shares our memory: how much this
+    /// process may grow in physical memory after the session was opened.
     pub memory_mib: Option<u64>,
     /// A directory to keep every query in: one replayable file per solver process, or per check of the
     /// embedded engine.

@@ -23,7 +23,7 @@ impl Gates {
 
     /// What the SAT solver was given.
     pub(super) fn size(&self) -> Size {
-        Size { clauses: self.sat.clauses, variables: self.next as usize }
+        Size { clauses: self.sat.clauses(), variables: self.next as usize }
     }
 
     pub(super) fn constant(&self, value: bool) -> Lit {
