@@ -32,6 +32,11 @@ impl Goal {
         }
     }
 
+    /// Nothing at all.
+    pub(crate) fn nothing() -> Goal {
+        Goal { parts: Vec::new(), all: true }
+    }
+
     /// Whether nothing is wanted.
     pub(crate) fn is_empty(&self) -> bool {
         self.all && self.parts.is_empty()

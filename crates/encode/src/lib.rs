@@ -76,6 +76,9 @@ pub struct Limits {
     pub residuals: usize,
     /// Cases of one universally quantified path.
     pub cases: usize,
+    /// Whether what a goal asks for says which states can matter. Without, all that can be reached do: answers are
+    /// the same, which tests rely on.
+    pub prune: bool,
 }
 
 impl Default for Limits {
@@ -88,6 +91,7 @@ impl Default for Limits {
             swept: 3_000_000,
             residuals: 20_000,
             cases: 4096,
+            prune: true,
         }
     }
 }

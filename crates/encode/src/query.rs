@@ -124,6 +124,11 @@ impl<'e, 'a> Query<'e, 'a> {
         if let Some(known) = self.layers.get(&key) {
             return Ok(known.clone());
         }
+        if !self.encoder.limits.prune {
+            let found = Rc::new(self.explore(path, &Goal::nothing(), &self.fixed)?);
+            self.layers.insert(key, found.clone());
+            return Ok(found);
+        }
         // With a slack there is little to explore alone; without, little beside a path that has been declared.
         let beside = self.slack.is_none().then(|| self.explore_beside(path, goal, None)).flatten();
         let found = match beside {
@@ -144,7 +149,7 @@ impl<'e, 'a> Query<'e, 'a> {
     /// # Errors
     /// [`Error::TooLarge`] where too much can matter.
     pub fn explore_block(&mut self, block: &[PathId], goal: &Goal) -> Result<(), Error> {
-        if self.encoder.states != States::Onehot {
+        if self.encoder.states != States::Onehot || !self.encoder.limits.prune {
             return Ok(());
         }
         if self.slack.is_some() && block.len() > 1 {
@@ -261,7 +266,13 @@ impl<'e, 'a> Query<'e, 'a> {
                 let layers = self.layers(path, goal)?;
                 self.declared.entry(path).or_insert_with(|| layers.clone());
                 let graph = explicit_graph(self.encoder, path);
-                Shape::Explicit(ExplicitPath::declare(&mut self.script, &names, graph, &layers))
+                Shape::Explicit(ExplicitPath::declare(
+                    &mut self.script,
+                    &names,
+                    graph,
+                    &layers,
+                    self.encoder.stop,
+                )?)
             }
             States::Bitvec | States::Int => {
                 let declared = self.builder(path, &names).declare(&mut self.script);
@@ -281,7 +292,9 @@ impl<'e, 'a> Query<'e, 'a> {
             States::Onehot => {
                 let layers = self.layers(path, goal)?;
                 let graph = explicit_graph(self.encoder, path);
-                let (path, bound, guard) = ExplicitPath::bind(&mut self.script.terms, &names, graph, &layers);
+                let terms = &mut self.script.terms;
+                let (path, bound, guard) =
+                    ExplicitPath::bind(terms, &names, graph, &layers, self.encoder.stop)?;
                 (Shape::Explicit(path), bound, guard)
             }
             States::Bitvec | States::Int => {
@@ -356,6 +369,9 @@ impl<'e, 'a> Query<'e, 'a> {
         beside: &[(PathId, Known)],
     ) -> Result<(), Error> {
         let Shape::Explicit(explicit) = &terms.shape else { return Ok(()) };
+        if !self.encoder.limits.prune {
+            return Ok(());
+        }
         let mut fixed = self.fixed.clone();
         for (other, known) in beside {
             if let Known::Explicit(known) = known {

@@ -32,7 +32,6 @@ impl Solve {
             return Err(Failure::input("--memory 0 leaves no memory to the solver"));
         }
         let plan = Config {
-            solver: solver(&args.solver)?,
             quantifiers: quantifiers(args.encoding.quantifiers),
             states: states(args.encoding.states)?,
             deadline: deadline(args.encoding.timeout)?,
@@ -40,6 +39,7 @@ impl Solve {
             seed: args.seed,
             memory_mib: args.memory,
             queries: args.queries.clone(),
+            ..Config::new(solver(&args.solver)?)
         };
         Ok(Solve { plan, plot, save: args.save.clone() })
     }

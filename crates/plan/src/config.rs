@@ -1,6 +1,6 @@
 //! What is asked for, and what comes out.
 
-use hyperplan_encode as encode;
+use hyperplan_encode::{self as encode, Limits};
 use hyperplan_problem::{PathId, Strategy};
 use hyperplan_solver::{self as solver, Deadline, Identity, Size, Spec};
 use std::fmt;
@@ -95,6 +95,8 @@ pub struct Config {
     pub memory_mib: Option<u64>,
     /// Where every query sent is kept.
     pub queries: Option<PathBuf>,
+    /// Budgets of the encoding.
+    pub limits: Limits,
 }
 
 impl Config {
@@ -110,6 +112,7 @@ impl Config {
             seed: 0,
             memory_mib: None,
             queries: None,
+            limits: Limits::default(),
         }
     }
 }

@@ -16,7 +16,7 @@
 use crate::config::{Config, Error, Outcome, Seconds, Verdict};
 use crate::lasting::{conjuncts, lasting};
 use crate::solve::solve_sharing;
-use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Limits, Query, States};
+use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Query, States};
 use hyperplan_problem::{FormulaId, Node, Objective, Problem, Quantifier};
 use hyperplan_solver::Size;
 use std::ops::RangeInclusive;
@@ -286,8 +286,7 @@ fn hopeless(
     graphs: &Graphs,
 ) -> Result<bool, encode::Error> {
     let stop = || config.deadline.passed();
-    let encoder =
-        Encoder::sharing(problem, objective, config.states.wish(), Limits::default(), &stop, graphs)?;
+    let encoder = Encoder::sharing(problem, objective, config.states.wish(), config.limits, &stop, graphs)?;
     let exists = objective.paths.first().is_some_and(|path| path.quantifier == Quantifier::Exists);
     if !exists || encoder.states != States::Onehot {
         return Ok(false);

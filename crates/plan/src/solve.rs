@@ -5,7 +5,7 @@ use crate::config::{Config, Error, Outcome, Quantifiers, Seconds, States, Verdic
 use crate::direct;
 use crate::oracle::{Oracle, Stop};
 use crate::prepare::{blocks, decided, no_dead_ends, without_paths};
-use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Limits};
+use hyperplan_encode::{self as encode, Encoder, Goal, Graphs};
 use hyperplan_problem::{Objective, PathId, Problem, Quantifier, Strategy};
 use hyperplan_solver::{Size, Spec};
 use hyperplan_verify as verify;
@@ -27,8 +27,28 @@ pub fn solve(problem: &Problem, objective: &Objective, config: &Config) -> Resul
     solve_sharing(problem, objective, config, &Graphs::default())
 }
 
-/// As [`solve`], with systems that were enumerated before.
+/// As [`solve`], with systems that were enumerated before. Where the choice of states is ours and too many can matter,
+/// the search goes on symbolically.
 pub(crate) fn solve_sharing(
+    problem: &Problem,
+    objective: &Objective,
+    config: &Config,
+    graphs: &Graphs,
+) -> Result<Outcome, Error> {
+    match attempt(problem, objective, config, graphs) {
+        Err(Error::Encode(error @ encode::Error::TooLarge { .. })) if config.states == States::Auto => {
+            let symbolic = Config { states: States::Bitvec, ..config.clone() };
+            let mut outcome = attempt(problem, objective, &symbolic, graphs)?;
+            outcome
+                .notes
+                .push(format!("states are bit-vectors, as there are too many to write one by one: {error}"));
+            Ok(outcome)
+        }
+        answer => answer,
+    }
+}
+
+fn attempt(
     problem: &Problem,
     objective: &Objective,
     config: &Config,
@@ -36,7 +56,7 @@ pub(crate) fn solve_sharing(
 ) -> Result<Outcome, Error> {
     let start = Instant::now();
     let stop = || config.deadline.passed();
-    let (wish, limits) = (config.states.wish(), Limits::default());
+    let (wish, limits) = (config.states.wish(), config.limits);
     let encoder = Encoder::sharing(problem, objective, wish, limits, &stop, graphs)?;
     if encoder.states == encode::States::Int && config.solver == Spec::Builtin {
         return Err(needs_arithmetic(&encoder));

@@ -73,9 +73,10 @@ impl<'a, const N: usize> Atoms<'a, N> {
             atoms.bit.insert(id, bit);
         }
         for (bit, expr) in behind {
-            let values = along(question, expr, horizon);
-            for (bits, value) in atoms.background.iter_mut().zip(&values) {
-                bits.holds |= u64::from(*value == Some(true)) << bit;
+            let values = along(question, expr);
+            for (time, bits) in atoms.background.iter_mut().enumerate() {
+                let value = values.get(time).copied().flatten();
+                bits.holds |= u64::from(value == Some(true)) << bit;
                 bits.unknown |= u64::from(value.is_none()) << bit;
             }
             settle(&mut atoms.settling, bit, &values);
@@ -224,42 +225,32 @@ fn classify<const N: usize>(question: &Question<'_, N>, expr: &Expr<PathLeaf>) -
     }
 }
 
-/// The value of a background atom at each time, where it is the same wherever its path can be.
-fn along<const N: usize>(
-    question: &Question<'_, N>,
-    expr: &Expr<PathLeaf>,
-    horizon: u32,
-) -> Vec<Option<bool>> {
+/// The value of a background atom at each time at which it can be read, where it is the same wherever its path can
+/// be.
+fn along<const N: usize>(question: &Question<'_, N>, expr: &Expr<PathLeaf>) -> Vec<Option<bool>> {
     let mut declared = None;
     expr.for_each_leaf(&mut |leaf| {
         let mut paths = leaf.paths().into_iter().flatten();
         declared = declared.or_else(|| paths.find(|&p| question.fixed[usize::from(p)].is_none()));
     });
     let Some(path) = declared else {
-        let last = paths_end(question, expr);
-        let nowhere: ([&Graph; 0], [Place; 0]) = ([], []);
         let question = question.about([]);
-        let at = |time| holds(&question, &nowhere.0, expr, &nowhere.1, time);
-        return (0..=horizon).map(|time| (time <= last).then(|| at(time))).collect();
+        let at = |time| Some(holds(&question, &[], expr, &[], time));
+        return (0..=paths_end(&question, expr)).map(at).collect();
     };
     let (Some(layers), Some(graph)) = (question.declared.get(&path), question.encoder.graph(path)) else {
-        return vec![None; horizon as usize + 1];
+        return Vec::new();
     };
     let question = question.about([path]);
     let mut truth: Vec<Option<bool>> = vec![None; graph.len()];
     let mut holds = |state: StateIx| {
         *truth[state as usize].get_or_insert_with(|| holds(&question, &[&**graph], expr, &[(state, None)], 0))
     };
-    let mut values: Vec<Option<bool>> = layers
-        .at
-        .iter()
-        .map(|states| {
-            let first = holds(*states.first()?);
-            states.iter().all(|&state| holds(state) == first).then_some(first)
-        })
-        .collect();
-    values.resize(horizon as usize + 1, None);
-    values
+    let same = |states: &Vec<StateIx>| {
+        let first = holds(*states.first()?);
+        states.iter().all(|&state| holds(state) == first).then_some(first)
+    };
+    layers.at.iter().map(same).collect()
 }
 
 /// The last time at which all the fixed paths of an atom are there.
@@ -274,13 +265,12 @@ fn paths_end<const N: usize>(question: &Question<'_, N>, expr: &Expr<PathLeaf>) 
     last
 }
 
-/// Notes from when on an atom keeps its value: up to the last time at which anything is known of it, beyond which it
-/// is not read.
+/// Notes from when on an atom keeps its value, up to the last time at which it can be read.
 fn settle(settling: &mut Settling, bit: u8, values: &[Option<bool>]) {
-    let Some(end) = values.iter().rposition(Option::is_some) else { return };
-    let from = values[..end].iter().rposition(|&value| value != values[end]).map_or(0, |at| at + 1);
+    let Some(Some(last)) = values.last() else { return };
+    let from = values.iter().rposition(|&value| value != Some(*last)).map_or(0, |at| at + 1);
     settling.known |= 1 << bit;
-    settling.bits |= u64::from(values[end] == Some(true)) << bit;
+    settling.bits |= u64::from(*last) << bit;
     settling.from = Some(settling.from.unwrap_or(0).max(from as u32));
 }
 
