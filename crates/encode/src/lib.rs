@@ -11,6 +11,7 @@ mod atom;
 mod eval;
 mod expand;
 mod explicit;
+mod game;
 mod generalize;
 mod goal;
 mod graph;

@@ -2,6 +2,7 @@
 
 use crate::atom::PathAtoms;
 use crate::explicit::{Building, ExplicitPath, FixedPath, Instances, Names};
+use crate::game::Game;
 use crate::goal::Goal;
 use crate::inputs::{Move, Start};
 use crate::path::{Instance, Known, Path, Shape};
@@ -10,7 +11,7 @@ use crate::sweep::{Sweep, sweep};
 use crate::symbolic::{Builder, SymbolicPath};
 use crate::unroll::Unroller;
 use crate::{Encoder, Error, Graph, States};
-use hyperplan_problem::PathId;
+use hyperplan_problem::{PathId, Quantifier};
 use hyperplan_smt::{Model, Script, Term};
 use rustc_hash::FxHashMap;
 use std::cell::Cell;
@@ -29,6 +30,8 @@ pub struct Query<'e, 'a> {
     layers: FxHashMap<(PathId, Goal), Rc<Layers>>,
     /// What can matter of the first copy of each declared path.
     declared: FxHashMap<PathId, Rc<Layers>>,
+    /// The game of the two paths that there are, where they are tied and the first has been explored.
+    game: Option<Rc<Game>>,
     /// See [`Query::with_slack`].
     slack: Option<u32>,
     /// A time before which no choice of the leading block owes nothing but safety.
@@ -67,6 +70,7 @@ impl<'e, 'a> Query<'e, 'a> {
             fixed,
             layers: FxHashMap::default(),
             declared: FxHashMap::default(),
+            game: None,
             slack: None,
             least: 0,
             one_run: false,
@@ -135,7 +139,14 @@ impl<'e, 'a> Query<'e, 'a> {
             Some(found) => found,
             None => {
                 let alone = self.explore(path, goal, &self.fixed)?;
-                self.explore_beside(path, goal, Some(&alone)).unwrap_or(alone)
+                match self.play(path, goal, &alone) {
+                    Some(game) => {
+                        let layers = game.layers();
+                        self.game = Some(Rc::new(game));
+                        layers
+                    }
+                    None => self.explore_beside(path, goal, Some(&alone)).unwrap_or(alone),
+                }
             }
         };
         let found = Rc::new(found);
@@ -179,6 +190,29 @@ impl<'e, 'a> Query<'e, 'a> {
             _ => {}
         }
         Ok(())
+    }
+
+    /// The game of the only path of the leading block, whose player has the goal, and the only other. `None` where the
+    /// formula does not tie them, and where there is too much to explore.
+    fn play(&self, path: PathId, goal: &Goal, within: &Layers) -> Option<Game> {
+        let encoder = self.encoder;
+        let [own, other] = encoder.objective.paths.raw.as_slice() else { return None };
+        let formula = &encoder.objective.formula;
+        let leads = usize::from(path) == 0 && own.quantifier != other.quantifier;
+        let wants = Goal::new(formula, own.quantifier == Quantifier::Exists);
+        if !leads || *goal != wants || self.fixed.iter().any(Option::is_some) {
+            return None;
+        }
+        let other = PathId::from(1);
+        if !encoder.ties(path, other) {
+            return None;
+        }
+        let (_, rest) = goal.split(formula, &|p| p == path);
+        let against = rest.opposed(formula);
+        let mut question = self.question([path, other], &against, &self.fixed);
+        question.within = [Some(within), None];
+        question.budget = encoder.limits.pairs;
+        Game::new(&question)
     }
 
     /// Whether it is plain that no choice of the leading block's paths reaches its player's goal: nothing of some path
@@ -266,13 +300,12 @@ impl<'e, 'a> Query<'e, 'a> {
                 let layers = self.layers(path, goal)?;
                 self.declared.entry(path).or_insert_with(|| layers.clone());
                 let graph = explicit_graph(self.encoder, path);
-                Shape::Explicit(ExplicitPath::declare(
-                    &mut self.script,
-                    &names,
-                    graph,
-                    &layers,
-                    self.encoder.stop,
-                )?)
+                let script = &mut self.script;
+                let declared = ExplicitPath::declare(script, &names, graph, &layers, self.encoder.stop)?;
+                if let Some(game) = self.game.as_ref().filter(|game| game.paths[0] == path) {
+                    close_moves(script, game, &declared);
+                }
+                Shape::Explicit(declared)
             }
             States::Bitvec | States::Int => {
                 let declared = self.builder(path, &names).declare(&mut self.script);
@@ -432,10 +465,18 @@ impl<'e, 'a> Query<'e, 'a> {
             return Ok(false);
         }
         let names = self.names(path);
-        let layers = self.layers(path, goal)?;
+        let game = self.game.clone().filter(|game| game.paths[1] == path && game.goal == *goal);
+        let game = game.as_deref().and_then(|game| {
+            let leading = env[usize::from(game.paths[0])].as_deref()?;
+            Some((game, explicit(leading)?))
+        });
+        let layers = match game {
+            Some((game, _)) => Rc::new(game.other_layers()),
+            None => self.layers(path, goal)?,
+        };
         let graph = explicit_graph(self.encoder, path);
         let question =
-            Sweep { encoder: self.encoder, graph, names: &names, path, layers: &layers, goal, env };
+            Sweep { encoder: self.encoder, graph, names: &names, path, layers: &layers, goal, env, game };
         Ok(sweep(&question, &mut self.script).is_some())
     }
 
@@ -456,6 +497,15 @@ impl<'e, 'a> Query<'e, 'a> {
                 let moves = terms.moves.as_deref()?;
                 symbolic.decode(self.encoder.system(path), moves, model).map(Known::Symbolic)
             }
+        }
+    }
+}
+
+/// Rules out the moves of a declared path that no winning run of it has.
+fn close_moves(script: &mut Script, game: &Game, path: &ExplicitPath) {
+    for time in 0..path.steps.len() {
+        for mistake in game.closed(time as u32) {
+            script.clause(&mistake.avoided(path, time, None));
         }
     }
 }

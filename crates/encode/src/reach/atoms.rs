@@ -92,7 +92,7 @@ impl<'a, const N: usize> Atoms<'a, N> {
         places: &[Place; N],
         time: u32,
     ) -> Bits {
-        let mut all = self.background[time as usize];
+        let mut all = self.background.get(time as usize).copied().unwrap_or_default();
         for (bit, atom) in &self.of_step {
             all.holds |= u64::from(atom.holds(question, graphs, places, time)) << bit;
         }

@@ -6,7 +6,7 @@ use super::{Layers, Place, Question, lasts};
 use crate::Error;
 use crate::graph::{Graph, StateIx};
 use crate::residual::{FALSE, Now, Residual, Residuals, TRUE};
-use hyperplan_problem::{FormulaId, Mode};
+use hyperplan_problem::{FormulaId, Mode, Node};
 use rustc_hash::FxHashMap;
 
 /// Joint states entered between two looks at the clock.
@@ -143,6 +143,12 @@ impl<'a, const N: usize> Exploration<'a, N> {
         self.bound.as_ref().map_or(0, |bound| bound.least).max(self.question.least)
     }
 
+    /// Whether every atom of the formula is known.
+    pub(crate) fn knows_all(&self) -> bool {
+        let nodes = &self.question.encoder.objective.formula.nodes;
+        nodes.iter().filter(|node| matches!(node, Node::Atom(_))).count() == self.atoms.bit.len()
+    }
+
     /// Whether one path may be in a state at a time, whatever is left to be met.
     fn admits(&self, at: usize, state: StateIx, time: u32) -> bool {
         lasts(self.question.encoder.objective.mode, self.graphs[at], state, time)
@@ -183,7 +189,9 @@ impl<'a, const N: usize> Exploration<'a, N> {
         }
     }
 
-    fn start(&mut self) -> Vec<Joint<N>> {
+    /// The joint states at the start, sorted.
+    pub(crate) fn start(&mut self) -> Vec<Joint<N>> {
+        self.mark(0);
         let mut all: Vec<[Place; N]> = vec![[(0, None); N]];
         for at in 0..N {
             let states = self.graphs[at].initial.iter().filter(|&&s| self.admits(at, s, 0));
@@ -208,7 +216,6 @@ impl<'a, const N: usize> Exploration<'a, N> {
 
     /// All joint states that can be reached, time by time.
     pub(crate) fn forward(&mut self) -> Result<Vec<Stage<N>>, Error> {
-        self.mark(0);
         let mut now = self.start();
         let mut all = Vec::with_capacity(self.horizon as usize + 1);
         let mut total = now.len();

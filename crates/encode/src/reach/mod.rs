@@ -84,7 +84,7 @@ pub(crate) struct Question<'a, const N: usize> {
 
 impl<'a, const N: usize> Question<'a, N> {
     /// The same question about another choice of paths.
-    fn about<const M: usize>(&self, paths: [PathId; M]) -> Question<'a, M> {
+    pub(crate) fn about<const M: usize>(&self, paths: [PathId; M]) -> Question<'a, M> {
         let Question { encoder, goal, fixed, declared, slack, least, lossy, budget, .. } = *self;
         Question { encoder, paths, within: [None; M], goal, fixed, declared, slack, least, lossy, budget }
     }

@@ -55,6 +55,7 @@ pub(crate) struct Now {
 }
 
 /// All residuals of one formula.
+#[derive(Clone)]
 pub(crate) struct Residuals {
     shapes: Vec<Shape>,
     index: FxHashMap<Shape, Residual>,
