@@ -2,8 +2,9 @@
 
 use crate::graph::Ahead;
 use crate::horizon::horizon;
+use crate::joint::JointMove;
 use crate::report::{Budget, Defeat, Error, Stop, Verdict};
-use crate::search::{Came, Fixed, Outcome, Search};
+use crate::search::{Fixed, Outcome, Search};
 use hyperplan_problem::{Mode, Objective, Problem, Quantifier, Strategy, Trace};
 
 /// Whether the strategy, one trace for each path variable of the objective's leading block, decides the objective
@@ -145,14 +146,18 @@ fn no_path(search: &mut Search<'_>, objective: &Objective, index: usize) -> Resu
 
 /// The traces of the first free block along the moves that decide it, continued in any way to the length that the
 /// objective reads: whatever follows, they defeat the claim.
-fn defeating(search: &mut Search<'_>, objective: &Objective, chain: &[Came]) -> Result<Vec<Trace>, Stop> {
+fn defeating(
+    search: &mut Search<'_>,
+    objective: &Objective,
+    chain: &[JointMove],
+) -> Result<Vec<Trace>, Stop> {
     let Search { graphs, levels, mode, ends, .. } = search;
     let joint = &levels[0].joint;
     let mut traces = Vec::new();
     for (i, &(path, system)) in joint.paths.iter().enumerate() {
         let graph = &mut graphs[system];
-        let mut ids: Vec<_> = chain.iter().map(|came| joint.states(came.to)[i]).collect();
-        let mut actions: Vec<_> = chain.iter().filter_map(|came| joint.deed(came.by)[i]).collect();
+        let mut ids: Vec<_> = chain.iter().map(|mv| joint.states(mv.to)[i]).collect();
+        let mut actions: Vec<_> = chain.iter().filter_map(|mv| joint.deed(mv.deed)[i]).collect();
         let length = match mode {
             Mode::Bounded => horizon(objective, path).min(LONGEST_DEFEAT),
             Mode::Within(k) => u64::from(*k),

@@ -65,6 +65,8 @@ pub(crate) struct Joint {
     deeds: TiVec<DeedId, Deed>,
     deed_index: FxHashMap<Deed, DeedId>,
     remembered: usize,
+    /// Whether all were kept.
+    complete: bool,
     limit: usize,
 }
 
@@ -86,6 +88,7 @@ impl Joint {
             deeds: TiVec::new(),
             deed_index: FxHashMap::default(),
             remembered: 0,
+            complete: true,
             limit: limit.min(u32::MAX as usize - 1),
         }
     }
@@ -108,6 +111,19 @@ impl Joint {
     /// What each path just did.
     pub(crate) fn deed(&self, deed: DeedId) -> &[Option<ActionId>] {
         &self.deeds[deed]
+    }
+
+    /// By joint state, those whose moves lead there; `None` where not all moves tried are kept.
+    pub(crate) fn sources(&self) -> Option<TiVec<JointId, Vec<JointId>>> {
+        let mut sources: TiVec<JointId, Vec<JointId>> = self.states.iter().map(|_| Vec::new()).collect();
+        for (from, moves) in self.moves.iter_enumerated() {
+            for mv in moves.iter().flat_map(|moves| moves.iter()) {
+                if sources[mv.to].last() != Some(&from) {
+                    sources[mv.to].push(from);
+                }
+            }
+        }
+        self.complete.then_some(sources)
     }
 
     /// All joint moves. A path that has ended stays where it is and takes no action.
@@ -135,6 +151,8 @@ impl Joint {
         if !some_ended && self.remembered + moves.len() <= REMEMBERED_MOVES {
             self.remembered += moves.len();
             self.moves[joint] = Some(moves.clone());
+        } else {
+            self.complete = false;
         }
         Ok(moves)
     }

@@ -29,8 +29,10 @@ pub(crate) struct Level {
     pub(crate) outer_actions: Vec<PathId>,
     /// Joint states that are known to go on far enough; for good, since they need ever fewer steps.
     pub(crate) viable: TiVec<JointId, bool>,
-    /// Whether its atoms read this block only, so that their values need computing only once.
-    pub(crate) local: bool,
+    /// Whether its state atoms, and its action atoms, read this block only, so that their values need computing
+    /// only once.
+    pub(crate) local_states: bool,
+    pub(crate) local_actions: bool,
     /// Valuations of state atoms by joint state, and of action atoms by deed: for ever where local, for one step
     /// at the first level, else not at all.
     pub(crate) by_state: TiVec<JointId, Option<ValuationId>>,
@@ -40,16 +42,23 @@ pub(crate) struct Level {
 impl Level {
     /// What is remembered of what the state atoms and the action atoms say after a move to a viable state.
     pub(crate) fn remembered(&self, mv: JointMove) -> Option<(ValuationId, ValuationId)> {
-        if !self.mixed_atoms.is_empty() || !*self.viable.get(mv.to)? {
+        Some((self.said(mv.to)?, (*self.by_deed.get(mv.deed)?)?))
+    }
+
+    /// What is remembered of what the state atoms say in a viable state, where they and the deed say it all.
+    pub(crate) fn said(&self, state: JointId) -> Option<ValuationId> {
+        if !self.mixed_atoms.is_empty() || !*self.viable.get(state)? {
             return None;
         }
-        Some(((*self.by_state.get(mv.to)?)?, (*self.by_deed.get(mv.deed)?)?))
+        *self.by_state.get(state)?
     }
 
     /// Forgets what holds for one step only.
     pub(crate) fn forget(&mut self) {
-        if !self.local {
+        if !self.local_states {
             self.by_state.clear();
+        }
+        if !self.local_actions {
             self.by_deed.clear();
         }
     }
@@ -89,7 +98,8 @@ pub(crate) fn levels(
             outer_states: Vec::new(),
             outer_actions: Vec::new(),
             viable: TiVec::new(),
-            local: true,
+            local_states: true,
+            local_actions: true,
             by_state: TiVec::new(),
             by_deed: TiVec::new(),
         };
@@ -125,7 +135,9 @@ impl Level {
             if next.is_some_and(|next| last >= next) {
                 continue;
             }
-            self.local &= atom.paths.iter().all(|&p| p >= first);
+            let local = atom.paths.iter().all(|&p| p >= first);
+            self.local_states &= local || !atom.reads_states;
+            self.local_actions &= local || !atom.reads_actions;
             match (atom.reads_states, atom.reads_actions) {
                 (true, true) => self.mixed_atoms.push(id),
                 (false, true) => self.action_atoms.push(id),

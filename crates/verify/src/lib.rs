@@ -45,17 +45,20 @@
 //! in an `exists` set a true pair makes the set true and false pairs are dropped, the empty set is false; dually for
 //! `forall`. A third constant, *missing*, stands for what a trace that has ended would have said (Kleene's unknown).
 //!
-//! The first free block is a plain breadth-first search over (joint state, value), with parents, so that a
-//! decisive pair gives back the paths that lead to it.
+//! The first free block is a plain breadth-first search over (joint state, value). The sets of each step are kept,
+//! most of them at a bit for each joint state; a decisive pair gives back the paths that lead to it by looking for
+//! some predecessor in the step before, and so on back to the start.
 
 mod atoms;
 mod check;
 mod domain;
 mod eval;
 mod graph;
+mod history;
 mod horizon;
 mod initial;
 mod joint;
+mod layer;
 mod level;
 mod progress;
 mod recent;
@@ -63,6 +66,7 @@ mod report;
 mod residual;
 mod scene;
 mod search;
+mod spread;
 mod step;
 #[cfg(test)]
 mod tests;

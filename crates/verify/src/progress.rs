@@ -20,10 +20,15 @@ impl Progress {
         Progress { memo: FxHashMap::default(), last: false, limit }
     }
 
-    /// From now on the last position is read: every residual becomes a constant.
-    pub(crate) fn at_last_position(&mut self) {
-        self.memo.clear();
-        self.last = true;
+    /// Says whether the position to be read is the last one, where every residual becomes a constant. Returns whether
+    /// this is news, so that nothing remembered holds any more.
+    pub(crate) fn at_last_position(&mut self, last: bool) -> bool {
+        let news = self.last != last;
+        if news {
+            self.memo.clear();
+            self.last = last;
+        }
+        news
     }
 
     /// The residual after a position where the atoms have these values. Iterative: residuals can be as deep as the

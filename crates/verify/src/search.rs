@@ -2,17 +2,20 @@
 
 use crate::atoms::{Atom, translate};
 use crate::graph::{Graph, StateId};
+use crate::history::History;
 use crate::horizon::horizon;
-use crate::joint::{DeedId, JointId};
+use crate::joint::{JointId, JointMove};
+use crate::layer::{Members, Next};
 use crate::level::{Level, levels};
 use crate::progress::Progress;
 use crate::recent::Recent;
 use crate::report::{Budget, Error, Reached, Stop};
 use crate::residual::{AtomId, ResidualId, Residuals};
+use crate::spread::{Kinds, Spread};
 use crate::valuation::{ValuationId, Valuations};
-use crate::value::{Pair, Sets, ValueId};
+use crate::value::{Sets, ValueId};
 use hyperplan_problem::{ActionId, Mode, Objective, PathId, Problem, SystemId};
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 use typed_index_collections::TiVec;
 
 /// A trace whose states are interned.
@@ -23,20 +26,11 @@ pub(crate) struct Fixed {
     pub(crate) actions: Vec<ActionId>,
 }
 
-/// How a pair of the first block came about.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Came {
-    /// Index in the layer before.
-    parent: u32,
-    pub(crate) by: DeedId,
-    pub(crate) to: JointId,
-}
-
 /// What the search found.
 #[derive(Debug)]
 pub(crate) enum Outcome {
     /// The truth value, and the moves of the first block that decide it, where some do.
-    Decided(bool, Option<Vec<Came>>),
+    Decided(bool, Option<Vec<JointMove>>),
     /// It depends on what a trace would have done beyond its end.
     Missing,
 }
@@ -122,53 +116,42 @@ impl<'p> Search<'p> {
         Reached { states: graphs.max(joints) as u64, ..self.reached }
     }
 
-    /// The objective's value on the fixed traces. With `trail`, remembers how each pair came about.
+    /// The objective's value on the fixed traces. With `trail`, the moves that decide it are found, too.
     pub(crate) fn run(&mut self, trail: bool) -> Result<Outcome, Stop> {
         let decisive = self.levels[0].decisive;
-        let mut layer: Vec<Pair> = vec![(JointId::START, ValueId::START)];
-        let mut trails: Vec<Vec<Came>> = Vec::new();
-        let mut seen = FxHashSet::default();
+        let start = Members::of(&[JointId::START], 1);
+        let mut history = History { layers: vec![vec![(ValueId::START, start)]], sets: Vec::new() };
+        let mut next = Next::default();
+        let mut kinds: [Option<Kinds>; 2] = [None, None];
         let mut missing = false;
         loop {
             let base = self.enter()?;
-            let mut next = Vec::new();
-            let mut came = Vec::new();
-            seen.clear();
-            for (parent, &(joint, value)) in (0_u32..).zip(&layer) {
-                for mv in self.joint_moves(0, joint)?.iter() {
-                    let Some(value) = self.follow(0, *mv, value, base)? else { continue };
-                    let here = Came { parent, by: mv.deed, to: mv.to };
-                    if value == ValueId::of(decisive) {
-                        let chain = trail.then(|| chain(&trails, here));
-                        return Ok(Outcome::Decided(decisive, chain));
-                    }
-                    missing |= value == ValueId::MISSING;
-                    if value.is_constant() || !seen.insert((mv.to, value)) {
-                        continue;
-                    }
-                    self.count_entries(1)?;
-                    next.push((mv.to, value));
-                    if trail {
-                        came.push(here);
-                    }
+            let found = match self.spread(&history.layers, kinds[0].as_ref(), base, &mut next)? {
+                Spread::Decided(last) => {
+                    let chain = if trail { Some(self.look_back(history, last)?) } else { None };
+                    return Ok(Outcome::Decided(decisive, chain));
                 }
-            }
-            if next.is_empty() {
+                Spread::Open(found) => found,
+            };
+            missing |= found.missing;
+            let layer = next.take(self.levels[0].joint.len());
+            if layer.is_empty() {
                 return Ok(if missing { Outcome::Missing } else { Outcome::Decided(!decisive, None) });
             }
-            trails.push(came);
-            layer = next;
+            self.count_entries(layer.iter().map(|(_, members)| members.size()).sum())?;
+            history.layers.push(layer);
+            history.sets.push(std::mem::replace(&mut self.before, std::mem::take(&mut self.now)));
+            let [_, last] = kinds;
+            kinds = [last, Some(found)];
             self.time += 1;
         }
     }
 
-    /// Turns to the present step: where the fixed traces are, and what their atoms say.
-    fn enter(&mut self) -> Result<ValuationId, Stop> {
-        if self.mode == Mode::Within(self.time) {
-            self.progress.at_last_position();
+    /// Turns to the present time: where the fixed traces are, and what their atoms say.
+    pub(crate) fn enter(&mut self) -> Result<ValuationId, Stop> {
+        if self.progress.at_last_position(self.mode == Mode::Within(self.time)) {
             self.recent.clear();
         }
-        self.before = std::mem::take(&mut self.now);
         self.memo.clear();
         self.levels[0].forget();
         let time = self.time as usize;
@@ -189,17 +172,4 @@ impl<'p> Search<'p> {
 pub(crate) fn end(problem: &Problem, objective: &Objective, path: PathId) -> Option<u64> {
     let finite = problem.systems[objective.paths[path].system].is_finite();
     (objective.mode == Mode::Bounded && !finite).then(|| horizon(objective, path))
-}
-
-/// The moves that lead to `last`, from time 0.
-fn chain(trails: &[Vec<Came>], last: Came) -> Vec<Came> {
-    let mut moves = vec![last];
-    let mut parent = last.parent;
-    for layer in trails.iter().rev() {
-        let Some(&came) = layer.get(parent as usize) else { break };
-        moves.push(came);
-        parent = came.parent;
-    }
-    moves.reverse();
-    moves
 }

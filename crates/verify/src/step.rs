@@ -39,10 +39,6 @@ impl Search<'_> {
         inner: ValueId,
         base: ValuationId,
     ) -> Result<Option<ValueId>, Stop> {
-        self.reached.moves += 1;
-        if self.reached.moves > self.budget.moves {
-            return Err(Stop::Budget);
-        }
         let innermost = level + 1 == self.levels.len();
         let look = |search: &Self| {
             let (states, deeds) = search.levels[level].remembered(mv).filter(|_| innermost)?;
@@ -112,7 +108,9 @@ impl Search<'_> {
                 pairs.push((joint, inner));
                 continue;
             }
-            for mv in self.joint_moves(level, joint)?.iter() {
+            let moves = self.joint_moves(level, joint)?;
+            self.count_moves(moves.len())?;
+            for mv in moves.iter() {
                 match self.follow(level, *mv, inner, base)? {
                     Some(v) if v == ValueId::of(decisive) => return Ok(v),
                     Some(v) if v == ValueId::of(!decisive) => {}
@@ -152,11 +150,25 @@ impl Search<'_> {
         if self.reached.entries > self.budget.entries { Err(Stop::Budget) } else { Ok(()) }
     }
 
+    /// Counts joint moves that are about to be tried.
+    pub(crate) fn count_moves(&mut self, moves: usize) -> Result<(), Stop> {
+        self.reached.moves += moves as u64;
+        if self.reached.moves > self.budget.moves { Err(Stop::Budget) } else { Ok(()) }
+    }
+
     /// What the atoms of the outer blocks, `base`, and those of this block say after a move of this block.
     fn valuation(&mut self, level: usize, mv: JointMove, base: ValuationId) -> ValuationId {
-        let Level { local, state_atoms, action_atoms, mixed_atoms, by_state, by_deed, joint, .. } =
-            &mut self.levels[level];
-        let remember = *local || level == 0;
+        let Level {
+            local_states,
+            local_actions,
+            state_atoms,
+            action_atoms,
+            mixed_atoms,
+            by_state,
+            by_deed,
+            joint,
+            ..
+        } = &mut self.levels[level];
         let scene = Scene {
             atoms: &self.atoms,
             graphs: &self.graphs,
@@ -169,7 +181,7 @@ impl Search<'_> {
             Some(known) => known,
             None => {
                 let part = valuations.part(scene.values(state_atoms));
-                if remember {
+                if *local_states || level == 0 {
                     by_state.resize(joint.len(), None);
                     by_state[mv.to] = Some(part);
                 }
@@ -180,7 +192,7 @@ impl Search<'_> {
             Some(known) => known,
             None => {
                 let part = valuations.part(scene.values(action_atoms));
-                if remember {
+                if *local_actions || level == 0 {
                     by_deed.resize(joint.deeds(), None);
                     by_deed[mv.deed] = Some(part);
                 }
