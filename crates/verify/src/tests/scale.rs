@@ -122,3 +122,101 @@ fn a_grid_of_60() {
 fn a_grid_of_200() {
     assert_eq!(run(200, 0), Verdict::Holds);
 }
+
+/// A wall between columns `8 i - 1` and `8 i`, with one door: at the top and at the bottom by turns.
+fn is_wall(n: i64, x: i64, y: i64) -> bool {
+    x % 8 == 0 && x > 0 && y != if x % 16 == 0 { 0 } else { n - 1 }
+}
+
+/// The grid with walls: no move leads across one.
+fn rooms(n: i64) -> System {
+    let is = |v, c: i64| {
+        let leaf = Box::new(Expr::Leaf(Leaf::Var(v)));
+        Expr::Compare(Comparison::Eq, leaf, Box::new(Expr::Const(Value::Int(c))))
+    };
+    let walls = || (1..n).filter(|x| x % 8 == 0);
+    let door = |x| if x % 16 == 0 { 0 } else { n - 1 };
+    let crosses = |column: i64, x: i64| Expr::And(vec![is(X, column), Expr::Not(Box::new(is(Y, door(x))))]);
+    let mut system = grid(n);
+    for (clause, side) in system.clauses.iter_mut().zip([1, 0]) {
+        let barred = walls().map(|x| crosses(x - side, x)).collect();
+        clause.guard = Expr::Not(Box::new(Expr::Or(barred)));
+    }
+    system
+}
+
+/// Where an action leads, if anywhere.
+fn step(n: i64, (x, y): (i64, i64), action: u32) -> Option<(i64, i64)> {
+    let to = match action {
+        0 => (x + 1, y),
+        1 => (x - 1, y),
+        2 => (x, y + 1),
+        _ => (x, y - 1),
+    };
+    let crossed = match action {
+        0 => is_wall(n, x + 1, y),
+        1 => is_wall(n, x, y),
+        _ => false,
+    };
+    ((0..n).contains(&to.0) && (0..n).contains(&to.1) && !crossed).then_some(to)
+}
+
+/// A fastest way from corner to corner, by breadth-first search.
+fn fastest(n: i64) -> Vec<u32> {
+    let mut came = std::collections::BTreeMap::from([((0, 0), None)]);
+    let mut queue = std::collections::VecDeque::from([(0, 0)]);
+    while let Some(at) = queue.pop_front() {
+        for action in 0..4 {
+            if let Some(to) = step(n, at, action)
+                && !came.contains_key(&to)
+            {
+                came.insert(to, Some((at, action)));
+                queue.push_back(to);
+            }
+        }
+    }
+    let mut actions = Vec::new();
+    let mut at = (n - 1, n - 1);
+    while let Some((from, action)) = came[&at] {
+        actions.push(action);
+        at = from;
+    }
+    actions.reverse();
+    actions
+}
+
+/// The states along a way.
+fn along(n: i64, actions: &[u32]) -> Vec<State> {
+    let mut at = (0, 0);
+    let state = |(x, y)| -> State { vec![Value::Int(x), Value::Int(y)].into() };
+    let mut states = vec![state(at)];
+    for &action in actions {
+        at = step(n, at, action).expect("no move leads across a wall");
+        states.push(state(at));
+    }
+    states
+}
+
+#[test]
+fn a_defeating_run_through_rooms_is_one() {
+    let n = 32;
+    let way = fastest(n);
+    let late = [vec![0, 1], way.clone()].concat();
+    let mut problem = shortest(n, u32::try_from(late.len()).unwrap());
+    problem.systems = vec![rooms(n)].into();
+    let run = |actions: &[u32]| {
+        let actions_of_p = actions.iter().copied().map(ActionId).collect();
+        let trace = Trace { path: PathId(0), states: along(n, actions), actions: actions_of_p };
+        let strategy = Strategy { traces: vec![trace] };
+        check(&problem, &problem.objectives[0], &strategy, &Budget::default()).unwrap()
+    };
+    // Far longer than the 62 steps that the map without walls takes; then up and down to the end.
+    assert_eq!(way.len(), 62 + 2 * 31);
+    assert_eq!(run(&[way.clone(), vec![3, 2]].concat()), Verdict::Holds);
+    let Verdict::Fails(Defeat::Paths(traces)) = run(&late) else { panic!("a detour is not shortest") };
+    let [q] = traces.as_slice() else { panic!("one path is free") };
+    let taken: Vec<u32> = q.actions.iter().map(|a| a.0).collect();
+    assert_eq!(q.states, along(n, &taken));
+    let goal = q.states.iter().position(|s| **s == [Value::Int(n - 1), Value::Int(n - 1)]);
+    assert_eq!(goal, Some(way.len()));
+}
