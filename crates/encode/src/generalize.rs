@@ -31,7 +31,9 @@ pub(crate) fn generalize(
                 .filter_map(other)
                 .find(|(_, o)| Rc::ptr_eq(&o.graph, &own.graph) && o.states[0] == own.states[0])
                 .map_or(Start::State(own.states[0]), |(p, _)| Start::Same(p));
-            let moves = (0..own.letters.len()).map(|time| explicit_move(own, &tied, time)).collect();
+            let quantifier = |p: PathId| encoder.objective.paths[p].quantifier;
+            let chosen = |p: PathId| quantifier(p) != quantifier(path);
+            let moves = (0..own.letters.len()).map(|time| explicit_move(own, &tied, &chosen, time)).collect();
             Instance::Explicit(Inputs { start, moves, values: Vec::new() })
         }
         Known::Symbolic(own) => {
@@ -61,13 +63,19 @@ pub(crate) fn generalize(
     }
 }
 
-fn explicit_move(own: &FixedPath, tied: &[(PathId, &FixedPath)], time: usize) -> Move {
+/// A path of the same player is an instance like this one: of its steps the actions are known, not the outcomes.
+fn explicit_move(
+    own: &FixedPath,
+    tied: &[(PathId, &FixedPath)],
+    chosen: &dyn Fn(PathId) -> bool,
+    time: usize,
+) -> Move {
     let letter = own.letters[time];
     let (action, number) = own.graph.letters[letter as usize];
     let same_letter =
         |o: &FixedPath| Rc::ptr_eq(&o.graph, &own.graph) && o.letters.get(time) == Some(&letter);
     match tied.iter().find(|(_, o)| o.actions.get(time) == Some(&action)) {
-        Some(&(p, other)) if same_letter(other) => Move::Same(p),
+        Some(&(p, other)) if chosen(p) && same_letter(other) => Move::Same(p),
         Some(&(p, _)) => Move::SameAction(p, number),
         None => Move::Act(action, number),
     }

@@ -18,7 +18,7 @@ pub enum Start<S> {
 /// One step of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Move {
-    /// The same action with the same outcome number as the other path.
+    /// The same action with the same outcome number as the other path, which another player chooses.
     Same(PathId),
     /// The same action as the other path, with this outcome (the last one, where there are fewer).
     SameAction(PathId, u32),
