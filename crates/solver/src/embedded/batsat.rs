@@ -16,9 +16,10 @@ pub(super) struct Backend {
 }
 
 impl Backend {
+    /// A solver; whether it will be asked more than once makes no difference to it.
     // The other backend can fail here.
     #[allow(clippy::unnecessary_wraps)]
-    pub(super) fn new(seed: u64) -> Result<Backend, Error> {
+    pub(super) fn new(seed: u64, _: bool) -> Result<Backend, Error> {
         Ok(Backend { sat: seeded(seed), clauses: 0, failure: None })
     }
 

@@ -46,8 +46,9 @@ enum Place {
 }
 
 impl Backend {
-    pub(super) fn new(seed: u64) -> Result<Backend, Error> {
-        let sat = seeded(seed)?;
+    /// A solver; `dialogue` if it will be asked more than once.
+    pub(super) fn new(seed: u64, dialogue: bool) -> Result<Backend, Error> {
+        let sat = configured(seed, dialogue)?;
         Ok(Backend { signature: sat.signature(), place: Place::Here(sat), clauses: 0, failure: None })
     }
 
@@ -167,18 +168,21 @@ fn wait(receiver: &Receiver<Ended>, mut give_up: impl FnMut() -> bool) -> Result
     }
 }
 
-fn seeded(seed: u64) -> Result<Sat, Error> {
+fn configured(seed: u64, dialogue: bool) -> Result<Sat, Error> {
     let mut sat = Sat::default();
     // CaDiCaL takes seeds up to 2 * 10^9.
     let seed = i32::try_from(seed % 2_000_000_000).unwrap_or(0);
     // Of a hundred states a path is in one, so variables are false to begin with, and staying near a solution wins
-    // more of these queries than restarts. Lucky phases and light preprocessing come with every check of a dialogue,
-    // and cost more than they gain. Processor seconds of eight hard queries (action robustness at 10x10 and 20x20,
-    // satisfiable and not, direct and counterexample-guided; opacity at 40x40), two seeds each, stopped after 12:
-    // the first two options 56, all four 13, and no query more than a fifth slower; without random walks 15, without
-    // walks but with lucky phases 55, without walks and simplification during search 19. In ten such queries
-    // CaDiCaL's defaults took 65, its `sat` 66 and `unsat` 91 where the first two options took 48.
-    let options = [("seed", seed), ("phase", 0), ("stabilizeonly", 1), ("preprocesslight", 0), ("lucky", 0)];
+    // more of these queries than restarts. Light preprocessing comes with every check of a dialogue, and costs more
+    // than it gains. Lucky phases do so too, but decide single queries that leave little to choose: the shortest path
+    // at 100x100 takes 0.2 s with them and 5 s without. Processor seconds of eight hard queries (action robustness at
+    // 10x10 and 20x20, satisfiable and not, direct and counterexample-guided; opacity at 40x40), two seeds each, stopped
+    // after 12: the first two options 56, all four 13; without random walks 15, without walks but with lucky phases
+    // 55, without walks and simplification during search 19. In ten such queries CaDiCaL's defaults took 65, its
+    // `sat` 66 and `unsat` 91 where the first two options took 48.
+    let lucky = i32::from(!dialogue);
+    let options =
+        [("seed", seed), ("phase", 0), ("stabilizeonly", 1), ("preprocesslight", 0), ("lucky", lucky)];
     // Little is left to chance in small queries; a seed asks for some random decisions.
     let random = [("randec", 1), ("randecstable", 1), ("randecinit", 2)];
     let random = random.into_iter().filter(|_| seed != 0);

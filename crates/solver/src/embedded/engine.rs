@@ -31,7 +31,7 @@ impl Engine {
     pub(crate) fn new(options: &Options) -> Result<Engine, Error> {
         options.demand_at_most(Quantifiers::None, "builtin")?;
         let memory = options.memory_mib.map(Memory::growing_by).transpose()?;
-        let backend = Backend::new(options.seed)?;
+        let backend = Backend::new(options.seed, options.incremental)?;
         let version = format!("{} ({})", env!("CARGO_PKG_VERSION"), backend.signature());
         let cnf = Cnf::new(Gates::new(backend));
         Ok(Engine {
