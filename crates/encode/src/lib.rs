@@ -36,7 +36,7 @@ pub use graph::{Graph, Graphs, LIVE, Letter, StateIx, TooLarge};
 pub use inputs::{Inputs, Move, Start};
 pub use inspect::{Findings, inspect};
 pub use path::{Instance, Known, Path};
-pub use query::{Env, Query};
+pub use query::{Env, Narrowing, Query};
 pub use reach::Layers;
 pub use symbolic::FixedRows;
 
@@ -88,7 +88,7 @@ impl Default for Limits {
             horizon: 100_000,
             states: 2_000_000,
             layer_states: 50_000_000,
-            pairs: 600_000,
+            pairs: 6_000_000,
             swept: 3_000_000,
             residuals: 20_000,
             cases: 4096,
@@ -370,6 +370,13 @@ impl<'a> Encoder<'a> {
 
     fn same_system(&self, p: PathId, q: PathId) -> bool {
         self.objective.paths[p].system == self.objective.paths[q].system
+    }
+
+    /// Whether the formula compares actions or states of some two paths.
+    #[must_use]
+    pub fn has_ties(&self) -> bool {
+        let mut paths = self.objective.paths.keys();
+        paths.any(|path| !self.tied_before(path).is_empty() || !self.compared_before(path).is_empty())
     }
 
     /// Whether the formula compares actions or states of two paths.

@@ -20,6 +20,16 @@ use std::rc::Rc;
 /// The paths over which the formula is unrolled, by path variable.
 pub type Env = Vec<Option<Rc<Path>>>;
 
+/// Which runs of the leading block are kept. What is found among some is right; that nothing is found says nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Narrowing {
+    /// Runs that owe nothing but safety at most so many steps after the earliest one does; without, all.
+    pub slack: Option<u32>,
+    /// Of these one only, that is there first, where it can be told: for a block of one path, and of two that are tied
+    /// and that the formula reads nothing else beside.
+    pub one_run: bool,
+}
+
 /// One script under construction.
 pub struct Query<'e, 'a> {
     encoder: &'e Encoder<'a>,
@@ -32,12 +42,10 @@ pub struct Query<'e, 'a> {
     declared: FxHashMap<PathId, Rc<Layers>>,
     /// The game of the two paths that there are, where they are tied and the first has been explored.
     game: Option<Rc<Game>>,
-    /// See [`Query::with_slack`].
-    slack: Option<u32>,
+    /// See [`Query::narrowed`].
+    narrowing: Narrowing,
     /// A time before which no choice of the leading block owes nothing but safety.
     least: u32,
-    /// See [`Query::one_run`].
-    one_run: bool,
     /// Whether runs have been lost that the goal does not exclude.
     lossy: Cell<bool>,
     instances: Instances,
@@ -71,37 +79,27 @@ impl<'e, 'a> Query<'e, 'a> {
             layers: FxHashMap::default(),
             declared: FxHashMap::default(),
             game: None,
-            slack: None,
+            narrowing: Narrowing::default(),
             least: 0,
-            one_run: false,
             lossy: Cell::new(false),
             instances: Instances::default(),
             copies: FxHashMap::default(),
         }
     }
 
-    /// Keeps of each path declared only the runs that owe nothing more at most so many steps after the earliest one
-    /// does. What is found is right; that nothing is found says nothing.
+    /// Keeps of the runs of the paths declared first only some.
     #[must_use]
-    pub fn with_slack(mut self, slack: Option<u32>) -> Self {
-        self.slack = slack;
+    pub fn narrowed(mut self, narrowing: Narrowing) -> Self {
+        self.narrowing = narrowing;
         self
     }
 
-    /// Allows [`Query::explore_block`] to keep one run where that decides. What is found is right; that nothing is
-    /// found says nothing.
-    #[must_use]
-    pub fn one_run(mut self, allowed: bool) -> Self {
-        self.one_run = allowed;
-        self
+    /// Lifts [`Query::narrowed`] for the paths to come.
+    pub fn widen(&mut self) {
+        self.narrowing = Narrowing::default();
     }
 
-    /// Lifts [`Query::with_slack`] for the paths to come.
-    pub fn lift_slack(&mut self) {
-        self.slack = None;
-    }
-
-    /// Whether no run was lost by [`Query::with_slack`] or [`Query::one_run`], so that nothing found means that there is nothing.
+    /// Whether no run was lost by [`Query::narrowed`], so that nothing found means that there is nothing.
     #[must_use]
     pub fn is_exact(&self) -> bool {
         !self.lossy.get()
@@ -134,7 +132,7 @@ impl<'e, 'a> Query<'e, 'a> {
             return Ok(found);
         }
         // With a slack there is little to explore alone; without, little beside a path that has been declared.
-        let beside = self.slack.is_none().then(|| self.explore_beside(path, goal, None)).flatten();
+        let beside = self.narrowing.slack.is_none().then(|| self.explore_beside(path, goal, None)).flatten();
         let found = match beside {
             Some(found) => found,
             None => {
@@ -154,8 +152,7 @@ impl<'e, 'a> Query<'e, 'a> {
         Ok(found)
     }
 
-    /// Explores the paths of the leading block, together where the formula ties two. Where nothing else is read,
-    /// [`Query::one_run`] may leave one run.
+    /// Explores the paths of the leading block, together where the formula ties two.
     ///
     /// # Errors
     /// [`Error::TooLarge`] where too much can matter.
@@ -163,13 +160,12 @@ impl<'e, 'a> Query<'e, 'a> {
         if self.encoder.states != States::Onehot || !self.encoder.limits.prune {
             return Ok(());
         }
-        if self.slack.is_some() && block.len() > 1 {
+        if self.narrowing.slack.is_some() && block.len() > 1 {
             for &path in block {
                 self.least = self.least.max(reach::least(&self.question([path], goal, &self.fixed))?);
             }
         }
-        let (_, rest) = goal.split(&self.encoder.objective.formula, &|path| block.contains(&path));
-        let one_run = self.one_run && rest.is_empty();
+        let one_run = self.narrowing.one_run;
         match *block {
             [path] if one_run => {
                 let question = self.question([path], goal, &self.fixed);
@@ -182,6 +178,8 @@ impl<'e, 'a> Query<'e, 'a> {
                 let mut question = self.question([first, second], goal, &self.fixed);
                 question.within = [Some(&alone[0]), Some(&alone[1])];
                 question.budget = self.encoder.limits.pairs;
+                let (_, rest) = goal.split(&self.encoder.objective.formula, &|path| block.contains(&path));
+                let one_run = one_run && rest.is_empty();
                 let Ok(found) = reach::pair_layers(&question, one_run) else { return self.encoder.go_on() };
                 for (path, found) in [first, second].into_iter().zip(found) {
                     self.layers.insert((path, goal.clone()), Rc::new(found));
@@ -248,7 +246,7 @@ impl<'e, 'a> Query<'e, 'a> {
             goal,
             fixed,
             declared: &self.declared,
-            slack: self.slack,
+            slack: self.narrowing.slack,
             least: self.least,
             lossy: &self.lossy,
             budget: self.encoder.limits.layer_states,

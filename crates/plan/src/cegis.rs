@@ -13,7 +13,7 @@
 //! finitely many, and the search ends.
 
 use crate::oracle::{Dialogue, Oracle, Stop};
-use hyperplan_encode::{Encoder, Env, Goal, Instance, Known, Query};
+use hyperplan_encode::{Encoder, Env, Goal, Instance, Known, Narrowing, Query};
 use hyperplan_problem::PathId;
 use hyperplan_smt::{Model, Term};
 
@@ -33,10 +33,8 @@ pub(crate) struct Cegis<'s, 'a, 'c> {
     /// Checks of all searches, and after how many to give up.
     pub(crate) checks: u32,
     pub(crate) most_checks: Option<u32>,
-    /// For the leading block, see [`Query::with_slack`].
-    pub(crate) slack: Option<u32>,
-    /// For the leading block, see [`Query::one_run`].
-    pub(crate) one_run: bool,
+    /// Which runs of the leading block are tried.
+    pub(crate) narrowing: Narrowing,
     /// Whether nothing has been lost thereby, so that nothing found means that there is nothing.
     pub(crate) exact: bool,
 }
@@ -86,8 +84,7 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
             rounds: 0,
             checks: 0,
             most_checks: None,
-            slack: None,
-            one_run: false,
+            narrowing: Narrowing::default(),
             exact: true,
         }
     }
@@ -147,7 +144,7 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
         let encoder = self.encoder;
         let mut query = Query::new(encoder, known);
         if level == 0 {
-            query = query.with_slack(self.slack).one_run(self.one_run);
+            query = query.narrowed(self.narrowing);
             query.explore_block(&self.blocks[level], goal)?;
         }
         let mut env = query.empty_env();
@@ -162,7 +159,7 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
             recipes[usize::from(path)] = Some(Recipe::Declared);
         }
         let formula = &encoder.objective.formula;
-        query.lift_slack();
+        query.widen();
         self.exact &= query.is_exact();
         let (own, rest) = goal.split(formula, &|path| env[usize::from(path)].is_some());
         query.script.section("what the formula asks of these paths alone");

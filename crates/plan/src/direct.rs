@@ -1,7 +1,7 @@
 //! One query for the whole objective: with its quantifiers, or expanded.
 
 use crate::oracle::{Oracle, Stop};
-use hyperplan_encode::{Encoder, Env, Error, Goal, Known, Query};
+use hyperplan_encode::{Encoder, Env, Error, Goal, Known, Narrowing, Query};
 use hyperplan_problem::PathId;
 use hyperplan_smt::{Script, Term};
 
@@ -20,7 +20,7 @@ pub(crate) fn keep<'e, 'a>(
 ) -> Result<Direct<'e, 'a>, Error> {
     let goal = Goal::new(&encoder.objective.formula, want);
     let against = goal.opposed(&encoder.objective.formula);
-    let mut direct = leading(encoder, blocks, &goal, None)?;
+    let mut direct = leading(encoder, blocks, &goal, Narrowing::default())?;
     let mut env = direct.env.clone();
     // From the outside in the paths are bound, from the inside out the formula is closed.
     let mut open = Vec::new();
@@ -54,11 +54,11 @@ pub(crate) fn sweep<'e, 'a>(
     encoder: &'e Encoder<'a>,
     blocks: &[Vec<PathId>],
     want: bool,
-    slack: Option<u32>,
+    narrowing: Narrowing,
 ) -> Result<Option<Direct<'e, 'a>>, Error> {
     let [_, last] = blocks else { return Ok(None) };
     let [path] = last.as_slice() else { return Ok(None) };
-    let (mut direct, rest) = demanding(encoder, blocks, want, slack)?;
+    let (mut direct, rest) = demanding(encoder, blocks, want, narrowing)?;
     let against = rest.opposed(&encoder.objective.formula);
     let swept = direct.query.sweep(*path, &direct.env, &against)?;
     Ok(swept.then_some(direct))
@@ -70,12 +70,12 @@ pub(crate) fn expand<'e, 'a>(
     encoder: &'e Encoder<'a>,
     blocks: &[Vec<PathId>],
     want: bool,
-    slack: Option<u32>,
+    narrowing: Narrowing,
 ) -> Result<Direct<'e, 'a>, Error> {
-    if let Some(direct) = sweep(encoder, blocks, want, slack)? {
+    if let Some(direct) = sweep(encoder, blocks, want, narrowing)? {
         return Ok(direct);
     }
-    let (mut direct, rest) = demanding(encoder, blocks, want, slack)?;
+    let (mut direct, rest) = demanding(encoder, blocks, want, narrowing)?;
     let against = rest.opposed(&encoder.objective.formula);
     let mut copies = vec![(direct.env.clone(), Term::TRUE)];
     for (depth, block) in blocks.iter().enumerate().skip(1) {
@@ -117,12 +117,12 @@ fn demanding<'e, 'a>(
     encoder: &'e Encoder<'a>,
     blocks: &[Vec<PathId>],
     want: bool,
-    slack: Option<u32>,
+    narrowing: Narrowing,
 ) -> Result<(Direct<'e, 'a>, Goal), Error> {
     let formula = &encoder.objective.formula;
     let goal = Goal::new(formula, want);
     let (own, rest) = goal.split(formula, &|path| blocks[0].contains(&path));
-    let mut direct = leading(encoder, blocks, &goal, slack)?;
+    let mut direct = leading(encoder, blocks, &goal, narrowing)?;
     direct.query.script.section("what the formula asks of the leading block alone");
     let demanded = direct.query.goal(&direct.env, &own);
     direct.query.script.assert(demanded);
@@ -133,15 +133,15 @@ fn leading<'e, 'a>(
     encoder: &'e Encoder<'a>,
     blocks: &[Vec<PathId>],
     goal: &Goal,
-    slack: Option<u32>,
+    narrowing: Narrowing,
 ) -> Result<Direct<'e, 'a>, Error> {
-    let mut query = Query::new(encoder, &[]).with_slack(slack);
+    let mut query = Query::new(encoder, &[]).narrowed(narrowing);
     query.explore_block(&blocks[0], goal)?;
     let mut env = query.empty_env();
     for &path in &blocks[0] {
         env[usize::from(path)] = Some(query.declare(path, goal)?);
     }
-    query.lift_slack();
+    query.widen();
     Ok(Direct { query, env })
 }
 

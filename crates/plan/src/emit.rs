@@ -3,7 +3,7 @@
 use crate::config::{EmitConfig, Error, Quantifiers};
 use crate::direct;
 use crate::prepare::{blocks, decided};
-use hyperplan_encode::{self as encode, Encoder, Limits};
+use hyperplan_encode::{self as encode, Encoder, Limits, Narrowing};
 use hyperplan_problem::{Mode, Objective, Problem, Quantifier};
 use hyperplan_smt::{Header, Script, Status, WriteOptions, write_script};
 use std::io;
@@ -74,8 +74,8 @@ fn build(encoder: &Encoder<'_>, config: &EmitConfig) -> Result<Emitted, Error> {
                     .into(),
             ));
         }
-        Quantifiers::Expand => direct::expand(encoder, &blocks, exists, None),
-        _ if blocks.len() == 1 => direct::expand(encoder, &blocks, exists, None),
+        Quantifiers::Expand => direct::expand(encoder, &blocks, exists, Narrowing::default()),
+        _ if blocks.len() == 1 => direct::expand(encoder, &blocks, exists, Narrowing::default()),
         Quantifiers::Keep | Quantifiers::Auto => direct::keep(encoder, &blocks, exists),
     };
     let script = query?.into_script();

@@ -5,7 +5,7 @@ use crate::config::{Config, Error, Outcome, Quantifiers, Seconds, States, Verdic
 use crate::direct;
 use crate::oracle::{Oracle, Stop};
 use crate::prepare::{blocks, decided, no_dead_ends, without_paths};
-use hyperplan_encode::{self as encode, Encoder, Goal, Graphs};
+use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Narrowing};
 use hyperplan_problem::{Objective, PathId, Problem, Quantifier, Strategy};
 use hyperplan_solver::{Size, Spec};
 use hyperplan_verify as verify;
@@ -154,11 +154,13 @@ fn search(
         return keep(encoder, config, oracle, &blocks, want);
     }
     let goal = Goal::new(&objective.formula, want);
-    for slack in SLACKS {
+    for narrowing in narrowings(encoder, &blocks, config) {
         let query = match choice {
             // Without a second block there is nothing to expand; the search below asks one query.
-            Quantifiers::Expand if blocks.len() > 1 => Some(direct::expand(encoder, &blocks, want, slack)?),
-            Quantifiers::Auto => direct::sweep(encoder, &blocks, want, slack)?,
+            Quantifiers::Expand if blocks.len() > 1 => {
+                Some(direct::expand(encoder, &blocks, want, narrowing)?)
+            }
+            Quantifiers::Auto => direct::sweep(encoder, &blocks, want, narrowing)?,
             _ => None,
         };
         let (found, exact) = if let Some(query) = query {
@@ -171,8 +173,7 @@ fn search(
             }
             let patient = choice != Quantifiers::Auto || is_finite(encoder);
             let mut cegis = Cegis::new(encoder, oracle, &blocks);
-            (cegis.slack, cegis.most_checks) = (slack, (!patient).then_some(ENDLESS));
-            cegis.one_run = slack.is_some() && config.quantifiers == Quantifiers::Auto;
+            (cegis.narrowing, cegis.most_checks) = (narrowing, (!patient).then_some(ENDLESS));
             let known = vec![None; objective.paths.len()];
             let found = cegis.find(0, &known, &goal, 1);
             outcome.iterations += cegis.rounds;
@@ -195,6 +196,17 @@ fn search(
         }
     }
     Ok(None)
+}
+
+/// Which runs of the leading block are tried, one after the other. Where the choice is ours, a search finds a run that is
+/// done first: where nothing else is read it decides; where no path is tied to it, it is worth a guess.
+fn narrowings(encoder: &Encoder<'_>, blocks: &[Vec<PathId>], config: &Config) -> Vec<Narrowing> {
+    let auto = config.quantifiers == Quantifiers::Auto;
+    let alone = blocks.len() == 1;
+    let guess = auto && !alone && !encoder.has_ties();
+    let guess = guess.then_some(Narrowing { slack: SLACKS[0], one_run: true });
+    let steps = SLACKS.map(|slack| Narrowing { slack, one_run: auto && alone && slack.is_some() });
+    guess.into_iter().chain(steps).collect()
 }
 
 /// Whether every path has finitely many states to be in.
