@@ -5,6 +5,7 @@ use crate::config::{Config, Error, Outcome, Quantifiers, Seconds, States, Verdic
 use crate::direct;
 use crate::oracle::{Oracle, Stop};
 use crate::prepare::{blocks, decided, no_dead_ends, without_paths};
+use crate::race::race;
 use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Limits};
 use hyperplan_problem::{Objective, PathId, Problem, Quantifier, Strategy};
 use hyperplan_solver::Spec;
@@ -34,6 +35,9 @@ pub(crate) fn solve_sharing(
     config: &Config,
     graphs: &Graphs,
 ) -> Result<Outcome, Error> {
+    if !config.rivals.is_empty() {
+        return race(problem, objective, config);
+    }
     let start = Instant::now();
     let stop = || config.deadline.passed();
     let (wish, limits) = (config.states.wish(), Limits::default());
@@ -62,6 +66,7 @@ pub(crate) fn solve_sharing(
     outcome.seconds =
         Seconds { encode: (total - oracle.solving).max(0.0), solve: oracle.solving, verify: 0.0 };
     outcome.solver = oracle.identity();
+    outcome.notes.append(&mut oracle.notes);
     match answer {
         Err(Stop::Error(Error::Encode(encode::Error::Interrupted))) => {
             outcome.reason = Some(config.deadline.reason().to_owned());
@@ -76,7 +81,7 @@ pub(crate) fn solve_sharing(
     }
     if config.verify {
         let start = Instant::now();
-        confirm(&encoder, config, &mut outcome)?;
+        confirm(&encoder, config, &mut outcome).map_err(|error| oracle.with_evidence(error))?;
         outcome.seconds.verify = start.elapsed().as_secs_f64();
     }
     Ok(outcome)
