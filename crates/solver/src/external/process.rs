@@ -24,6 +24,8 @@ use crate::deadline::Deadline;
 
 /// How often to look at the clock and the cancel flag while waiting.
 const TICK: Duration = Duration::from_millis(20);
+/// How long output may still come after the process has exited.
+const ABANDONED: Duration = Duration::from_millis(300);
 /// How much of standard error is remembered.
 const TAIL: usize = 4096;
 /// Unread replies while we are still sending: more than this is no dialogue.
@@ -50,6 +52,8 @@ pub(super) struct Process {
     cut: bool,
     watched: Option<Watched>,
     status: Option<String>,
+    /// Since when it is known to have exited, though something holds its output open.
+    exited: Option<Instant>,
 }
 
 impl Process {
@@ -86,6 +90,7 @@ impl Process {
             cut: false,
             watched,
             status: None,
+            exited: None,
         })
     }
 
@@ -172,12 +177,27 @@ impl Process {
     fn drain(&mut self, wait: Duration) {
         match self.output.recv_timeout(wait) {
             Ok(chunk) => self.splitter.feed(&chunk),
+            Err(RecvTimeoutError::Timeout) if self.is_abandoned() => self.end(),
             Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => {
-                self.ended = true;
-                self.splitter.finish();
-            }
+            Err(RecvTimeoutError::Disconnected) => self.end(),
         }
+    }
+
+    fn end(&mut self) {
+        self.ended = true;
+        self.splitter.finish();
+    }
+
+    /// Whether the process has exited a while ago: a child of its own that holds the output open has nothing to say.
+    fn is_abandoned(&mut self) -> bool {
+        if self.exited.is_none() && self.pid().is_none_or(has_exited) {
+            self.exited = Some(Instant::now());
+        }
+        self.exited.is_some_and(|exited| exited.elapsed() > ABANDONED)
+    }
+
+    fn pid(&self) -> Option<Pid> {
+        i32::try_from(self.child.id()).ok().and_then(Pid::from_raw)
     }
 
     /// The end of what it wrote to standard error.
@@ -191,18 +211,21 @@ impl Process {
         if let Some(status) = &self.status {
             return status.clone();
         }
-        if self.ended {
-            // Output is closed: it is probably about to end by itself, with a status worth showing.
-            let pid = i32::try_from(self.child.id()).ok().and_then(Pid::from_raw);
-            wait_until(Duration::from_millis(200), || pid.is_none_or(has_exited).then_some(()));
-        }
+        // Output is closed: it is probably about to end by itself, with a status worth showing.
+        let patience = Duration::from_millis(if self.ended { 200 } else { 0 });
+        let pid = self.pid();
+        let own_end = wait_until(patience, || pid.is_none_or(has_exited).then_some(())).is_some();
         // Fails only if nothing is left of the group. Nobody has waited for the process yet, so the number is its own.
         let _ = self.child.start_kill();
         self.watched = None;
         let status = wait_until(Duration::from_secs(2), || self.child.try_wait().ok().flatten());
         // What it said last may be on its way yet. Only a process that left the group can keep the pipe open.
         wait_until(Duration::from_millis(200), || self.error_reader.is_finished().then_some(()));
-        let status = status.map_or_else(|| "killed".to_owned(), |status: ExitStatus| status.to_string());
+        let status = match status {
+            Some(status) if own_end => ExitStatus::to_string(&status),
+            _ if self.ended => "it closed its output".to_owned(),
+            _ => "killed".to_owned(),
+        };
         self.status = Some(status.clone());
         status
     }
