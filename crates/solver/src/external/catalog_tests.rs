@@ -121,3 +121,35 @@ fn lists_are_split_at_commas_outside_of_quotes() {
     assert_eq!(specs, [Spec::Profile("z3".to_owned()), Spec::Builtin, command]);
     assert!(Catalog::default().specs("z3,,cvc5").is_err());
 }
+
+/// The examples of the page about solvers are good, and all in one file.
+#[test]
+fn the_examples_are_good() {
+    let page = include_str!("../../../../docs/solvers.md");
+    let blocks = page.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
+    let catalog = with(&blocks.collect::<String>());
+    for name in ["cvc4", "z3-old", "mathsat", "opensmt", "smtinterpol", "batch"] {
+        assert_eq!(configured(&catalog, name).name, name);
+    }
+}
+
+#[test]
+fn damaged_files_are_refused_with_a_place_inside() {
+    let text = include_str!("solvers.toml");
+    let lines = text.lines().count() + 1;
+    let mut refused = 0;
+    for at in 0..text.len() {
+        for by in [&b"\""[..], b"[", b"\n", b"=", b"\xc3\xa4"] {
+            let damaged = [&text.as_bytes()[..at], by, &text.as_bytes()[at + 1..]].concat();
+            let Ok(damaged) = String::from_utf8(damaged) else { continue };
+            if let Err(error) = Catalog::default().add(Path::new("x"), &damaged) {
+                assert!(
+                    (1..=lines + 1).contains(&error.line) && !error.what.is_empty(),
+                    "{error}: {damaged}"
+                );
+                refused += 1;
+            }
+        }
+    }
+    assert!(refused > 1000, "{refused}");
+}

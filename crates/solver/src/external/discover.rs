@@ -131,7 +131,10 @@ pub(super) fn search(program: &str) -> (Option<PathBuf>, Vec<String>) {
         if is_program(&path) {
             return (Some(path), tried);
         }
-        tried.push(path.display().to_string());
+        let path = path.display().to_string();
+        if !tried.contains(&path) {
+            tried.push(path);
+        }
     }
     (None, tried)
 }
