@@ -37,7 +37,7 @@ PROBLEMS = [
     ("rooms.hp", "iso"),
     ("rooms.hp", "cso"),
 ]
-WAYS = [["--quantifiers", "auto"], ["--states", "bitvec"], ["--quantifiers", "cegis"]]
+WAYS = [["--quantifiers", "auto"], ["--quantifiers", "expand"], ["--quantifiers", "cegis"], ["--states", "bitvec"]]
 
 
 def solve(hyperplan, problem, objective, way, solver, queries):

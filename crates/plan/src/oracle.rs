@@ -63,8 +63,11 @@ impl<'c> Oracle<'c> {
         let start = Instant::now();
         let answer = dialogue.session.check(script, &[], &self.config.deadline);
         self.solving += start.elapsed().as_secs_f64();
-        self.identity.get_or_insert_with(|| dialogue.session.identity());
-        match answer? {
+        let answer = answer?;
+        if answer != Answer::Sat {
+            self.introduce(dialogue);
+        }
+        match answer {
             Answer::Sat => Ok(true),
             Answer::Unsat => self.cross_check(dialogue, script).map(|()| false),
             // The solver may give its own name to what our clock did.
@@ -95,6 +98,7 @@ impl<'c> Oracle<'c> {
             _ => {}
         }
         let model: Model = symbols.into_iter().zip(values?).collect();
+        self.introduce(dialogue);
         if !dialogue.trusted {
             self.evaluate(dialogue, script, &model)?;
         }
@@ -127,6 +131,11 @@ impl<'c> Oracle<'c> {
             }
             (error, _) => error,
         }
+    }
+
+    /// Takes note of who answers, once the solver has had the occasion to say its version.
+    fn introduce(&mut self, dialogue: &Dialogue) {
+        self.identity.get_or_insert_with(|| dialogue.session.identity());
     }
 
     /// A model that describes no path, or whose paths fail.

@@ -80,14 +80,13 @@ impl Fake {
     }
 }
 
+/// Whether there is such a process. What nobody waits for any more is a matter of the system's first process.
 fn exists(pid: &str) -> bool {
-    let output = Command::new("ps").args(["-o", "stat=", "-p", pid]).output().expect("every Unix has ps");
-    // What nobody waits for any more is a matter of the system's first process.
-    let stat = String::from_utf8_lossy(&output.stdout).trim().to_owned();
-    !stat.is_empty() && !(stat.starts_with('Z') && is_orphan(pid))
-}
-
-fn is_orphan(pid: &str) -> bool {
-    let output = Command::new("ps").args(["-o", "ppid=", "-p", pid]).output().expect("every Unix has ps");
-    String::from_utf8_lossy(&output.stdout).trim() == "1"
+    let output =
+        Command::new("ps").args(["-o", "stat=,ppid=", "-p", pid]).output().expect("every Unix has ps");
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    match text.split_whitespace().collect::<Vec<_>>().as_slice() {
+        [stat, parent] => !(stat.starts_with('Z') && *parent == "1"),
+        _ => false,
+    }
 }

@@ -57,6 +57,7 @@ struct Entry {
     theories: Option<Vec<Theory>>,
     quantifiers: Option<Quantifiers>,
     version: Option<Vec<String>>,
+    tells_version: Option<bool>,
     install: Option<Install>,
 }
 
@@ -218,6 +219,7 @@ impl Entry {
             theories: self.theories.or(base.theories),
             quantifiers: self.quantifiers.unwrap_or(base.quantifiers),
             version: self.version.unwrap_or(base.version),
+            tells_version: self.tells_version.unwrap_or(base.tells_version),
             install: self.install.unwrap_or(base.install),
             origin: origin.map(Path::to_owned),
         })
@@ -241,6 +243,7 @@ fn plain() -> Profile {
         theories: None,
         quantifiers: Quantifiers::Any,
         version: vec!["--version".to_owned()],
+        tells_version: false,
         install: Install::default(),
         origin: None,
     }
@@ -281,5 +284,4 @@ fn beside(origin: Option<&Path>, program: String) -> String {
 }
 
 #[cfg(test)]
-#[path = "catalog_tests.rs"]
 mod tests;

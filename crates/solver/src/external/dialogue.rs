@@ -164,6 +164,14 @@ impl Dialogue {
         Ok(())
     }
 
+    /// Finds out the version, where that was not done yet and the solver tells it.
+    fn learn_version(&self, running: &mut Running) {
+        if self.program.is_to_tell_version() && running.exchange.is_open() {
+            let version = running.exchange.version(&self.deadline);
+            self.program.version.learn(&version.unwrap_or_default());
+        }
+    }
+
     /// Values of symbols that the solver knows.
     fn ask_values(
         &self,
@@ -215,7 +223,11 @@ impl Dialogue {
             }
             Some(answer) => answer,
         };
+        // While values are wanted, the model is not to be put at risk.
         self.has_model = answer == Answer::Sat;
+        if !self.has_model {
+            self.learn_version(&mut running);
+        }
         self.running = Some(running);
         Ok(answer)
     }
@@ -256,6 +268,7 @@ impl Session for Dialogue {
             }
         };
         let values = self.known_values(&mut running, script, symbols)?;
+        self.learn_version(&mut running);
         self.running = Some(running);
         Ok(values)
     }

@@ -130,6 +130,18 @@ impl Exchange {
         reason.unwrap_or_else(|| "unknown".to_owned())
     }
 
+    /// What the solver says its version is. One that does not say so soon is not asked any more.
+    pub(super) fn version(&mut self, deadline: &Deadline) -> Option<String> {
+        let deadline = deadline.within(PATIENCE);
+        self.send(b"(get-info :version)\n".to_vec(), &deadline);
+        let version = match self.next(&deadline) {
+            Next::Reply(reply) => Some(reply.text().to_owned()).filter(|text| text.contains(":version")),
+            Next::Ended | Next::Deadline => None,
+        };
+        self.lost = version.is_none();
+        version
+    }
+
     /// The values in the reply to a `get-value` about those symbols.
     pub(super) fn values(
         &mut self,

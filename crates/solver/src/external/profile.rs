@@ -41,6 +41,8 @@ pub struct Profile {
     pub(crate) quantifiers: Quantifiers,
     /// The arguments that make it say its version.
     pub(crate) version: Vec<String>,
+    /// Whether it also says it in a dialogue, to `(get-info :version)`: that saves a process.
+    pub(crate) tells_version: bool,
     /// How to install it.
     pub(crate) install: Install,
     /// The configuration file that says so; none for the table of hyperplan.

@@ -32,7 +32,7 @@ impl Program {
         let one_shot = profile.one_shot.as_ref().filter(|_| one_shot);
         Ok(Program {
             name: profile.name.clone(),
-            version: Version::begin(&path, &profile.version),
+            version: Version::of(&path, &profile.version),
             path,
             arguments: one_shot.unwrap_or(&profile.arguments).clone(),
             one_shot: one_shot.is_some() || !profile.incremental,
@@ -60,6 +60,11 @@ impl Program {
     /// Whether the query comes in a file.
     pub(super) fn takes_file(&self) -> bool {
         self.arguments.iter().any(|argument| argument.contains(FILE))
+    }
+
+    /// Whether to ask for the version in the dialogue.
+    pub(super) fn is_to_tell_version(&self) -> bool {
+        !self.version.is_known() && self.profile.as_ref().is_some_and(|profile| profile.tells_version)
     }
 
     /// Whether it takes bit-vectors, as far as it is known.

@@ -1,10 +1,10 @@
-//! What a program says its version is: found out beside the dialogue, once for each program.
+//! What a program says its version is: found out once for each program, in the dialogue if it tells it there.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, mpsc};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::process::{Next, Process};
 use crate::deadline::Deadline;
@@ -16,47 +16,57 @@ const WAIT: Duration = Duration::from_millis(500);
 
 type Key = (PathBuf, Vec<String>);
 
-/// The versions that were asked for.
+/// The versions that were asked for or will be.
 static ASKED: Mutex<BTreeMap<Key, Arc<OnceLock<String>>>> = Mutex::new(BTreeMap::new());
 
-/// A version that is being found out; empty if the program does not say it.
+/// The version of a program, once it is known; empty if the program does not say it.
 #[derive(Clone)]
-pub(super) struct Version(Arc<OnceLock<String>>);
+pub(super) struct Version {
+    key: Key,
+    known: Arc<OnceLock<String>>,
+}
 
 impl Version {
     /// No version.
     pub(super) fn none() -> Version {
-        Version(Arc::new(OnceLock::from(String::new())))
+        Version { key: Key::default(), known: Arc::new(OnceLock::from(String::new())) }
     }
 
-    /// Begins to find out the version of a program, unless that was begun before.
-    pub(super) fn begin(program: &Path, arguments: &[String]) -> Version {
+    /// The version of a program that says it when it is given those arguments. Nothing is started yet.
+    pub(super) fn of(program: &Path, arguments: &[String]) -> Version {
         let key = (program.to_owned(), arguments.to_vec());
         let mut asked = ASKED.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(version) = asked.get(&key) {
-            return Version(Arc::clone(version));
-        }
-        let version = Version(Arc::default());
-        asked.insert(key.clone(), Arc::clone(&version.0));
-        let cell = Arc::clone(&version.0);
-        let ask = move || cell.set(ask(&key.0, &key.1).unwrap_or_default());
-        if thread::Builder::new().name("solver version".into()).spawn(ask).is_err() {
-            return Version::none();
-        }
-        version
+        let known = Arc::clone(asked.entry(key.clone()).or_default());
+        Version { key, known }
     }
 
-    /// The version, if it comes soon.
+    pub(super) fn is_known(&self) -> bool {
+        self.known.get().is_some()
+    }
+
+    /// What the program said in a dialogue.
+    pub(super) fn learn(&self, reply: &str) {
+        if let Some(version) = reply.split_whitespace().find_map(number) {
+            // What was known before stays.
+            let _ = self.known.set(version.to_owned());
+        }
+    }
+
+    /// The version. If it is not known, the program is asked, and may take a moment to answer.
     pub(super) fn get(&self) -> String {
-        let end = Instant::now() + WAIT;
-        loop {
-            if let Some(version) = self.0.get() {
-                return version.clone();
-            }
-            if Instant::now() >= end {
-                return String::new();
-            }
-            thread::sleep(Duration::from_millis(2));
+        if let Some(version) = self.known.get() {
+            return version.clone();
+        }
+        let (send, receive) = mpsc::channel();
+        let (key, known) = (self.key.clone(), Arc::clone(&self.known));
+        let ask = move || {
+            let version = known.get_or_init(|| ask(&key.0, &key.1).unwrap_or_default());
+            // Nobody may be waiting any more.
+            let _ = send.send(version.clone());
+        };
+        match thread::Builder::new().name("solver version".into()).spawn(ask) {
+            Ok(_) => receive.recv_timeout(WAIT).unwrap_or_default(),
+            Err(_) => String::new(),
         }
     }
 }

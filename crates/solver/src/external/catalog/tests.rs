@@ -125,7 +125,7 @@ fn lists_are_split_at_commas_outside_of_quotes() {
 /// The examples of the page about solvers are good, and all in one file.
 #[test]
 fn the_examples_are_good() {
-    let page = include_str!("../../../../docs/solvers.md");
+    let page = include_str!("../../../../../docs/solvers.md");
     let blocks = page.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
     let catalog = with(&blocks.collect::<String>());
     for name in ["cvc4", "z3-old", "mathsat", "opensmt", "smtinterpol", "batch"] {
@@ -135,7 +135,7 @@ fn the_examples_are_good() {
 
 #[test]
 fn damaged_files_are_refused_with_a_place_inside() {
-    let text = include_str!("solvers.toml");
+    let text = include_str!("../solvers.toml");
     let lines = text.lines().count() + 1;
     let mut refused = 0;
     for at in 0..text.len() {
