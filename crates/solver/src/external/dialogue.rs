@@ -115,7 +115,8 @@ impl Dialogue {
             let _ = running.printer.assertion(&mut text, terms, script.assertion(running.fed));
             running.fed += 1;
             if text.len() > PIECE {
-                running.exchange.send(std::mem::take(&mut text), deadline);
+                let piece = std::mem::replace(&mut text, Vec::with_capacity(2 * PIECE));
+                running.exchange.send(piece, deadline);
                 if deadline.passed() || running.exchange.must_stop() {
                     return Ok(());
                 }

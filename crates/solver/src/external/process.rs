@@ -19,7 +19,7 @@ use process_wrap::std::{ChildWrapper, CommandWrap, ProcessGroup};
 use rustix::process::{Pid, WaitId, WaitIdOptions, waitid};
 
 use super::reply::{Reply, Splitter};
-use super::watchdog::Watched;
+use super::watchdog::{self, Watched};
 use crate::deadline::Deadline;
 
 /// How often to look at the clock and the cancel flag while waiting.
@@ -68,6 +68,8 @@ impl Process {
         let (input, chunks) = mpsc::sync_channel::<Vec<u8>>(16);
         let (started, start) = mpsc::channel();
         thread::Builder::new().name("solver input".into()).spawn(move || keep(command, &started, &chunks))?;
+        // Meanwhile: it takes as long as starting the solver.
+        watchdog::begin();
         let ended = || io::Error::other("the thread that starts solvers ended");
         let mut child = start.recv().map_err(|_| ended())??;
         let watched = Some(Watched::group(child.id()));

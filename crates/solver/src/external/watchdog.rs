@@ -21,6 +21,11 @@ struct Watchdog {
     _shell: Child,
 }
 
+/// Starts the watchdog, unless it was.
+pub(super) fn begin() {
+    WATCHDOG.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert_with(start);
+}
+
 /// A group to be killed with us, as long as this lives.
 pub(super) struct Watched(u32);
 

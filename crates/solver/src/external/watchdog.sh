@@ -14,4 +14,4 @@ while IFS= read -r line; do
 done
 for group in $groups; do kill -9 "-$group"; done
 IFS=$newline
-rm -f -- $files
+[ -z "$files" ] || rm -f -- $files
