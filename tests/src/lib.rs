@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 
 mod beyond;
 pub mod brute;
+mod conformant;
 pub mod fuzz;
 pub mod model;
 pub mod random;

@@ -1,6 +1,7 @@
 //! Random problems.
 
 use crate::brute::Brute;
+use crate::conformant::conformant;
 use crate::model::{Atom, Formula, Interval, Kind, Observe, Problem, Rule, Semantics, System};
 
 /// A reproducible source of numbers (SplitMix64).
@@ -23,12 +24,12 @@ impl Random {
         usize::try_from((z ^ (z >> 31)) % n as u64).unwrap_or(0)
     }
 
-    fn bound(&mut self, n: u32) -> u32 {
+    pub(crate) fn bound(&mut self, n: u32) -> u32 {
         u32::try_from(self.below(n as usize)).unwrap_or(0)
     }
 
     /// True once in `n` times.
-    fn once_in(&mut self, n: usize) -> bool {
+    pub(crate) fn once_in(&mut self, n: usize) -> bool {
         self.below(n) == 0
     }
 
@@ -57,6 +58,9 @@ pub fn problem(random: &mut Random) -> Problem {
 }
 
 fn attempt(random: &mut Random) -> Problem {
+    if random.once_in(8) {
+        return conformant(random);
+    }
     let system = system(random);
     // Four paths are there for three alternations of quantifiers.
     let paths = if random.once_in(8) { 4 } else { 1 + random.below(3) };

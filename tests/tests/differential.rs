@@ -4,7 +4,7 @@
 //! number by a time; a failure prints the problem, ready to be put among the fixtures, and the seed that makes it the
 //! first one.
 
-use hyperplan_plan::{Config, Error, Outcome, Quantifiers, States, Verdict, solve};
+use hyperplan_plan::{Config, Error, Limits, Outcome, Quantifiers, States, Verdict, solve};
 use hyperplan_problem::{NoFiles, Objective, Overrides, Problem, Rational, Strategy, Value, read};
 use hyperplan_solver::{Deadline, Spec, discover};
 use hyperplan_syntax::SourceMap;
@@ -155,18 +155,47 @@ fn action(problem: &Problem, name: &str) -> hyperplan_problem::ActionId {
     problem.action(name).expect("an action of the problem")
 }
 
-/// The answers of one way to solve.
-fn answer(
-    problem: &Problem,
-    objective: &Objective,
-    solver: &Spec,
-    cross_check: Option<Spec>,
+/// One way to solve: how quantifiers are decided, how states are written, and budgets.
+#[derive(Clone, Copy, Debug)]
+struct Way {
     quantifiers: Quantifiers,
     states: States,
-) -> Result<Outcome, Error> {
-    let deadline = Deadline::after(Duration::from_secs(60));
-    let config = Config { cross_check, quantifiers, states, deadline, ..Config::new(solver.clone()) };
-    solve(problem, objective, &config)
+    limits: Limits,
+}
+
+impl Way {
+    /// All that a solver might be asked. The embedded one is also asked without pruning, and with budgets that are
+    /// soon exceeded.
+    fn all(solver: &Spec, quantifiers: &[Quantifiers]) -> Vec<Way> {
+        let usual = Limits::default();
+        let unpruned = Limits { prune: false, ..usual };
+        let tight = Limits { layer_states: 40, pairs: 12, swept: 30, residuals: 8, ..usual };
+        let mut ways = Vec::new();
+        for &quantifiers in quantifiers {
+            for states in [States::Onehot, States::Bitvec, States::Int] {
+                ways.push(Way { quantifiers, states, limits: usual });
+            }
+            if *solver == Spec::Builtin {
+                ways.push(Way { quantifiers, states: States::Onehot, limits: unpruned });
+                ways.push(Way { quantifiers, states: States::Auto, limits: tight });
+            }
+        }
+        ways
+    }
+
+    fn answer(
+        self,
+        problem: &Problem,
+        objective: &Objective,
+        solver: &Spec,
+        cross_check: Option<Spec>,
+    ) -> Result<Outcome, Error> {
+        let Way { quantifiers, states, limits } = self;
+        let deadline = Deadline::after(Duration::from_secs(60));
+        let config =
+            Config { cross_check, quantifiers, states, limits, deadline, ..Config::new(solver.clone()) };
+        solve(problem, objective, &config)
+    }
 }
 
 /// How many answers there were, how many requests were not supported or not decided, and what was wrong.
@@ -187,22 +216,21 @@ impl Answers {
         let expected = brute.verdict();
         let text = fixture(&random.to_string(), expected);
         let typed = lowered(&text);
-        for &quantifiers in ways {
-            for states in [States::Onehot, States::Bitvec, States::Int] {
-                let finite = typed.systems.iter().all(hyperplan_problem::System::is_finite);
-                // The embedded solver has no numbers, and what is not finite is nothing else.
-                if (states == States::Int && *solver == Spec::Builtin) || (states != States::Int && !finite) {
-                    continue;
-                }
-                match answer(&typed, &typed.objectives[0], solver, self.second.clone(), quantifiers, states) {
-                    Ok(Outcome { verdict: Verdict::Unknown, .. }) => self.unknown += 1,
-                    Err(error) if error.exit_code() == 2 => self.unsupported += 1,
-                    answer => {
-                        self.given += 1;
-                        if let Some(why) = wrong(answer, random, &brute, &typed, expected) {
-                            let way = format!("--quantifiers {quantifiers} --states {states}");
-                            self.wrong.push(format!("{solver:?} {way}, seed {seed}: {why}\n{text}"));
-                        }
+        for way in Way::all(solver, ways) {
+            let finite = typed.systems.iter().all(hyperplan_problem::System::is_finite);
+            // The embedded solver has no numbers, and what is not finite is nothing else.
+            if (way.states == States::Int && *solver == Spec::Builtin)
+                || (way.states != States::Int && !finite)
+            {
+                continue;
+            }
+            match way.answer(&typed, &typed.objectives[0], solver, self.second.clone()) {
+                Ok(Outcome { verdict: Verdict::Unknown, .. }) => self.unknown += 1,
+                Err(error) if error.exit_code() == 2 => self.unsupported += 1,
+                answer => {
+                    self.given += 1;
+                    if let Some(why) = wrong(answer, random, &brute, &typed, expected) {
+                        self.wrong.push(format!("{solver:?} {way:?}, seed {seed}: {why}\n{text}"));
                     }
                 }
             }

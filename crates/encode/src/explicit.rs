@@ -4,6 +4,7 @@
 use crate::graph::{Graph, Letter, StateIx};
 use crate::inputs::{Inputs, Move, Start};
 use crate::reach::Layers;
+use crate::{Error, Stop};
 use hyperplan_problem::{ActionId, PathId, Problem, System, Value};
 use hyperplan_smt::{Model, Script, Sort, Term, Terms};
 use rustc_hash::FxHashMap;
@@ -209,12 +210,16 @@ impl ExplicitPath {
     /// A path that the solver chooses: a symbol for each state of the layers and each letter, and clauses that make
     /// them a path. With exactly one state at time 0 and exactly one letter a step, both directions of the
     /// transition leave exactly one state at every time.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] soon after `stop` says so.
     pub(crate) fn declare(
         script: &mut Script,
         names: &Names<'_>,
         graph: &Rc<Graph>,
         layers: &Layers,
-    ) -> Self {
+        stop: Stop<'_>,
+    ) -> Result<Self, Error> {
         script.section(format!("path {}", names.path));
         if layers.at.iter().any(Vec::is_empty) {
             script.assert(Term::FALSE);
@@ -227,6 +232,9 @@ impl ExplicitPath {
         let start = exactly_one(&mut script.terms, &path.layers[0].terms);
         script.assert(start);
         for time in 0..path.layers.len() - 1 {
+            if stop() {
+                return Err(Error::Interrupted);
+            }
             let letters = letters_between(graph, layers, time);
             let terms = symbols(&mut script.terms, &letters, false, time + 1, |l| names.letter(graph, l));
             let one = exactly_one(&mut script.terms, &terms);
@@ -236,17 +244,21 @@ impl ExplicitPath {
             transition(script, graph, &path.layers[time], &step, &path.layers[time + 1]);
             path.steps.push(Rc::new(step));
         }
-        path
+        Ok(path)
     }
 
     /// A path whose initial state and letters are bound variables and whose other states are defined by them: the
     /// path, the variables, and the condition that they are a path.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] soon after `stop` says so.
     pub(crate) fn bind(
         terms: &mut Terms,
         names: &Names<'_>,
         graph: &Rc<Graph>,
         layers: &Layers,
-    ) -> (Self, Vec<Term>, Term) {
+        stop: Stop<'_>,
+    ) -> Result<(Self, Vec<Term>, Term), Error> {
         let mut guards = Vec::new();
         let mut bound = Vec::new();
         let mut choice = |terms: &mut Terms, variables: &[Term]| {
@@ -259,6 +271,9 @@ impl ExplicitPath {
         let mut path = ExplicitPath { graph: graph.clone(), layers: Vec::new(), steps: Vec::new() };
         path.layers.push(Rc::new(Layer { states: layers.at[0].clone(), terms: start }));
         for time in 0..layers.at.len() - 1 {
+            if stop() {
+                return Err(Error::Interrupted);
+            }
             let letters = letters_between(graph, layers, time);
             let variables = symbols(terms, &letters, true, time + 1, |l| names.letter(graph, l));
             choice(terms, &variables);
@@ -280,7 +295,7 @@ impl ExplicitPath {
         let arrived = path.layers.last().map_or(Vec::new(), |l| l.terms.clone());
         guards.push(terms.or(&arrived));
         let guard = terms.and(&guards);
-        (path, bound, guard)
+        Ok((path, bound, guard))
     }
 
     /// A known path, as constants.

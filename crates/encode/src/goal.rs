@@ -32,6 +32,16 @@ impl Goal {
         }
     }
 
+    /// Nothing at all.
+    pub(crate) fn nothing() -> Goal {
+        Goal { parts: Vec::new(), all: true }
+    }
+
+    /// Whether nothing is wanted.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.all && self.parts.is_empty()
+    }
+
     /// The parts that read only these paths, which can be demanded of them alone, and the rest.
     #[must_use]
     pub fn split(&self, formula: &Formula, paths: &dyn Fn(PathId) -> bool) -> (Goal, Goal) {

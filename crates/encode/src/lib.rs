@@ -11,6 +11,7 @@ mod atom;
 mod eval;
 mod expand;
 mod explicit;
+mod game;
 mod generalize;
 mod goal;
 mod graph;
@@ -76,6 +77,9 @@ pub struct Limits {
     pub residuals: usize,
     /// Cases of one universally quantified path.
     pub cases: usize,
+    /// Whether what a goal asks for says which states can matter. Without, all that can be reached do: answers are
+    /// the same, which tests rely on.
+    pub prune: bool,
 }
 
 impl Default for Limits {
@@ -88,6 +92,7 @@ impl Default for Limits {
             swept: 3_000_000,
             residuals: 20_000,
             cases: 4096,
+            prune: true,
         }
     }
 }
@@ -365,6 +370,11 @@ impl<'a> Encoder<'a> {
 
     fn same_system(&self, p: PathId, q: PathId) -> bool {
         self.objective.paths[p].system == self.objective.paths[q].system
+    }
+
+    /// Whether the formula compares actions or states of two paths.
+    fn ties(&self, first: PathId, second: PathId) -> bool {
+        [self.tied_before(second), self.compared_before(second)].iter().any(|ties| ties.contains(&first))
     }
 
     /// The paths quantified before this one whose actions the formula compares with its own.

@@ -2,15 +2,16 @@
 
 use crate::atom::PathAtoms;
 use crate::explicit::{Building, ExplicitPath, FixedPath, Instances, Names};
+use crate::game::Game;
 use crate::goal::Goal;
 use crate::inputs::{Move, Start};
 use crate::path::{Instance, Known, Path, Shape};
-use crate::reach::{Layers, Question, layers};
+use crate::reach::{self, Layers, Question};
 use crate::sweep::{Sweep, sweep};
 use crate::symbolic::{Builder, SymbolicPath};
 use crate::unroll::Unroller;
 use crate::{Encoder, Error, Graph, States};
-use hyperplan_problem::PathId;
+use hyperplan_problem::{PathId, Quantifier};
 use hyperplan_smt::{Model, Script, Term};
 use rustc_hash::FxHashMap;
 use std::cell::Cell;
@@ -29,9 +30,15 @@ pub struct Query<'e, 'a> {
     layers: FxHashMap<(PathId, Goal), Rc<Layers>>,
     /// What can matter of the first copy of each declared path.
     declared: FxHashMap<PathId, Rc<Layers>>,
+    /// The game of the two paths that there are, where they are tied and the first has been explored.
+    game: Option<Rc<Game>>,
     /// See [`Query::with_slack`].
     slack: Option<u32>,
-    /// Whether the slack has lost runs.
+    /// A time before which no choice of the leading block owes nothing but safety.
+    least: u32,
+    /// See [`Query::one_run`].
+    one_run: bool,
+    /// Whether runs have been lost that the goal does not exclude.
     lossy: Cell<bool>,
     instances: Instances,
     /// How many copies of each path variable there are, for names.
@@ -63,7 +70,10 @@ impl<'e, 'a> Query<'e, 'a> {
             fixed,
             layers: FxHashMap::default(),
             declared: FxHashMap::default(),
+            game: None,
             slack: None,
+            least: 0,
+            one_run: false,
             lossy: Cell::new(false),
             instances: Instances::default(),
             copies: FxHashMap::default(),
@@ -78,12 +88,20 @@ impl<'e, 'a> Query<'e, 'a> {
         self
     }
 
+    /// Allows [`Query::explore_block`] to keep one run where that decides. What is found is right; that nothing is
+    /// found says nothing.
+    #[must_use]
+    pub fn one_run(mut self, allowed: bool) -> Self {
+        self.one_run = allowed;
+        self
+    }
+
     /// Lifts [`Query::with_slack`] for the paths to come.
     pub fn lift_slack(&mut self) {
         self.slack = None;
     }
 
-    /// Whether no run was lost by [`Query::with_slack`], so that nothing found means that there is nothing.
+    /// Whether no run was lost by [`Query::with_slack`] or [`Query::one_run`], so that nothing found means that there is nothing.
     #[must_use]
     pub fn is_exact(&self) -> bool {
         !self.lossy.get()
@@ -110,10 +128,91 @@ impl<'e, 'a> Query<'e, 'a> {
         if let Some(known) = self.layers.get(&key) {
             return Ok(known.clone());
         }
-        let alone = self.explore(path, goal, &self.fixed)?;
-        let found = Rc::new(self.explore_beside(path, goal, &alone).unwrap_or(alone));
+        if !self.encoder.limits.prune {
+            let found = Rc::new(self.explore(path, &Goal::nothing(), &self.fixed)?);
+            self.layers.insert(key, found.clone());
+            return Ok(found);
+        }
+        // With a slack there is little to explore alone; without, little beside a path that has been declared.
+        let beside = self.slack.is_none().then(|| self.explore_beside(path, goal, None)).flatten();
+        let found = match beside {
+            Some(found) => found,
+            None => {
+                let alone = self.explore(path, goal, &self.fixed)?;
+                match self.play(path, goal, &alone) {
+                    Some(game) => {
+                        let layers = game.layers();
+                        self.game = Some(Rc::new(game));
+                        layers
+                    }
+                    None => self.explore_beside(path, goal, Some(&alone)).unwrap_or(alone),
+                }
+            }
+        };
+        let found = Rc::new(found);
         self.layers.insert(key, found.clone());
         Ok(found)
+    }
+
+    /// Explores the paths of the leading block, together where the formula ties two. Where nothing else is read,
+    /// [`Query::one_run`] may leave one run.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] where too much can matter.
+    pub fn explore_block(&mut self, block: &[PathId], goal: &Goal) -> Result<(), Error> {
+        if self.encoder.states != States::Onehot || !self.encoder.limits.prune {
+            return Ok(());
+        }
+        if self.slack.is_some() && block.len() > 1 {
+            for &path in block {
+                self.least = self.least.max(reach::least(&self.question([path], goal, &self.fixed))?);
+            }
+        }
+        let (_, rest) = goal.split(&self.encoder.objective.formula, &|path| block.contains(&path));
+        let one_run = self.one_run && rest.is_empty();
+        match *block {
+            [path] if one_run => {
+                let question = self.question([path], goal, &self.fixed);
+                let found = reach::layers(&question, true)?;
+                self.layers.insert((path, goal.clone()), Rc::new(found));
+            }
+            [first, second] if self.encoder.ties(first, second) => {
+                let alone =
+                    [self.explore(first, goal, &self.fixed)?, self.explore(second, goal, &self.fixed)?];
+                let mut question = self.question([first, second], goal, &self.fixed);
+                question.within = [Some(&alone[0]), Some(&alone[1])];
+                question.budget = self.encoder.limits.pairs;
+                let Ok(found) = reach::pair_layers(&question, one_run) else { return self.encoder.go_on() };
+                for (path, found) in [first, second].into_iter().zip(found) {
+                    self.layers.insert((path, goal.clone()), Rc::new(found));
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// The game of the only path of the leading block, whose player has the goal, and the only other. `None` where the
+    /// formula does not tie them, and where there is too much to explore.
+    fn play(&self, path: PathId, goal: &Goal, within: &Layers) -> Option<Game> {
+        let encoder = self.encoder;
+        let [own, other] = encoder.objective.paths.raw.as_slice() else { return None };
+        let formula = &encoder.objective.formula;
+        let leads = usize::from(path) == 0 && own.quantifier != other.quantifier;
+        let wants = Goal::new(formula, own.quantifier == Quantifier::Exists);
+        if !leads || *goal != wants || self.fixed.iter().any(Option::is_some) {
+            return None;
+        }
+        let other = PathId::from(1);
+        if !encoder.ties(path, other) {
+            return None;
+        }
+        let (_, rest) = goal.split(formula, &|p| p == path);
+        let against = rest.opposed(formula);
+        let mut question = self.question([path, other], &against, &self.fixed);
+        question.within = [Some(within), None];
+        question.budget = encoder.limits.pairs;
+        Game::new(&question)
     }
 
     /// Whether it is plain that no choice of the leading block's paths reaches its player's goal: nothing of some path
@@ -125,9 +224,10 @@ impl<'e, 'a> Query<'e, 'a> {
         if self.encoder.states != States::Onehot {
             return Ok(false);
         }
+        self.explore_block(block, goal)?;
         for &path in block {
             let layers = self.layers(path, goal)?;
-            if layers.at.iter().any(Vec::is_empty) {
+            if layers.is_empty() {
                 return Ok(true);
             }
             self.declared.entry(path).or_insert(layers);
@@ -135,36 +235,40 @@ impl<'e, 'a> Query<'e, 'a> {
         Ok(false)
     }
 
-    fn explore(&self, path: PathId, goal: &Goal, fixed: &[Option<FixedPath>]) -> Result<Layers, Error> {
-        let [found] = layers(&Question {
+    fn question<'q, const N: usize>(
+        &'q self,
+        paths: [PathId; N],
+        goal: &'q Goal,
+        fixed: &'q [Option<FixedPath>],
+    ) -> Question<'q, N> {
+        Question {
             encoder: self.encoder,
-            paths: [path],
-            within: [None],
+            paths,
+            within: [None; N],
             goal,
             fixed,
+            declared: &self.declared,
             slack: self.slack,
+            least: self.least,
             lossy: &self.lossy,
             budget: self.encoder.limits.layer_states,
-        })?;
-        Ok(found)
+        }
+    }
+
+    fn explore(&self, path: PathId, goal: &Goal, fixed: &[Option<FixedPath>]) -> Result<Layers, Error> {
+        reach::layers(&self.question([path], goal, fixed), false)
     }
 
     /// `None` where there is no such other path, or too many pairs.
-    fn explore_beside(&self, path: PathId, goal: &Goal, alone: &Layers) -> Option<Layers> {
+    fn explore_beside(&self, path: PathId, goal: &Goal, alone: Option<&Layers>) -> Option<Layers> {
         let encoder = self.encoder;
         let partners = encoder.tied_before(path).into_iter().chain(encoder.compared_before(path));
         let (other, beside) = partners.into_iter().find_map(|p| Some((p, self.declared.get(&p)?)))?;
-        let [_, found] = layers(&Question {
-            encoder,
-            paths: [other, path],
-            within: [Some(beside), Some(alone)],
-            goal,
-            fixed: &self.fixed,
-            slack: None,
-            lossy: &self.lossy,
-            budget: encoder.limits.pairs,
-        })
-        .ok()?;
+        let mut question = self.question([other, path], goal, &self.fixed);
+        question.within = [Some(beside), alone];
+        question.slack = None;
+        question.budget = encoder.limits.pairs;
+        let [_, found] = reach::pair_layers(&question, false).ok()?;
         Some(found)
     }
 
@@ -196,7 +300,12 @@ impl<'e, 'a> Query<'e, 'a> {
                 let layers = self.layers(path, goal)?;
                 self.declared.entry(path).or_insert_with(|| layers.clone());
                 let graph = explicit_graph(self.encoder, path);
-                Shape::Explicit(ExplicitPath::declare(&mut self.script, &names, graph, &layers))
+                let script = &mut self.script;
+                let declared = ExplicitPath::declare(script, &names, graph, &layers, self.encoder.stop)?;
+                if let Some(game) = self.game.as_ref().filter(|game| game.paths[0] == path) {
+                    close_moves(script, game, &declared);
+                }
+                Shape::Explicit(declared)
             }
             States::Bitvec | States::Int => {
                 let declared = self.builder(path, &names).declare(&mut self.script);
@@ -216,7 +325,9 @@ impl<'e, 'a> Query<'e, 'a> {
             States::Onehot => {
                 let layers = self.layers(path, goal)?;
                 let graph = explicit_graph(self.encoder, path);
-                let (path, bound, guard) = ExplicitPath::bind(&mut self.script.terms, &names, graph, &layers);
+                let terms = &mut self.script.terms;
+                let (path, bound, guard) =
+                    ExplicitPath::bind(terms, &names, graph, &layers, self.encoder.stop)?;
                 (Shape::Explicit(path), bound, guard)
             }
             States::Bitvec | States::Int => {
@@ -291,6 +402,9 @@ impl<'e, 'a> Query<'e, 'a> {
         beside: &[(PathId, Known)],
     ) -> Result<(), Error> {
         let Shape::Explicit(explicit) = &terms.shape else { return Ok(()) };
+        if !self.encoder.limits.prune {
+            return Ok(());
+        }
         let mut fixed = self.fixed.clone();
         for (other, known) in beside {
             if let Known::Explicit(known) = known {
@@ -351,10 +465,18 @@ impl<'e, 'a> Query<'e, 'a> {
             return Ok(false);
         }
         let names = self.names(path);
-        let layers = self.layers(path, goal)?;
+        let game = self.game.clone().filter(|game| game.paths[1] == path && game.goal == *goal);
+        let game = game.as_deref().and_then(|game| {
+            let leading = env[usize::from(game.paths[0])].as_deref()?;
+            Some((game, explicit(leading)?))
+        });
+        let layers = match game {
+            Some((game, _)) => Rc::new(game.other_layers()),
+            None => self.layers(path, goal)?,
+        };
         let graph = explicit_graph(self.encoder, path);
         let question =
-            Sweep { encoder: self.encoder, graph, names: &names, path, layers: &layers, goal, env };
+            Sweep { encoder: self.encoder, graph, names: &names, path, layers: &layers, goal, env, game };
         Ok(sweep(&question, &mut self.script).is_some())
     }
 
@@ -375,6 +497,15 @@ impl<'e, 'a> Query<'e, 'a> {
                 let moves = terms.moves.as_deref()?;
                 symbolic.decode(self.encoder.system(path), moves, model).map(Known::Symbolic)
             }
+        }
+    }
+}
+
+/// Rules out the moves of a declared path that no winning run of it has.
+fn close_moves(script: &mut Script, game: &Game, path: &ExplicitPath) {
+    for time in 0..path.steps.len() {
+        for mistake in game.closed(time as u32) {
+            script.clause(&mistake.avoided(path, time, None));
         }
     }
 }

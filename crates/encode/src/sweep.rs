@@ -8,11 +8,15 @@
 //! clauses is exactly the set of pairs that runs can be in, so they are satisfiable exactly by the choices that no
 //! run defeats. There is one copy of the path's states for each residual, instead of one for each counterexample,
 //! and unit propagation alone follows all runs.
+//!
+//! Where the only other path is tied to this one, [`crate::game`] knows from which pairs which moves of that path lose.
+//! They are ruled out before they are made, and runs are followed only where there is such a choice ahead.
 
 use crate::Encoder;
 use crate::atom::{Env, OnRun, PathAtoms};
 use crate::eval::eval;
-use crate::explicit::Names;
+use crate::explicit::{ExplicitPath, Names};
+use crate::game::{Game, Pair};
 use crate::goal::Goal;
 use crate::graph::{Graph, StateIx};
 use crate::reach::Layers;
@@ -26,8 +30,8 @@ use std::collections::BTreeMap;
 /// More conditions than this on one move are left to other methods: each doubles the clauses.
 const MAX_CONDITIONS: usize = 3;
 
-/// Residuals beyond which the pairs are left to other methods.
-const MAX_RESIDUALS: usize = 512;
+/// Residuals of one time beyond which the pairs are left to other methods.
+pub(crate) const MAX_RESIDUALS: usize = 512;
 
 /// What a sweep is about.
 pub(crate) struct Sweep<'s, 'a> {
@@ -41,10 +45,12 @@ pub(crate) struct Sweep<'s, 'a> {
     pub(crate) goal: &'s Goal,
     /// The paths before it.
     pub(crate) env: &'s Env,
+    /// The game of the path with the only other one, and that one's terms.
+    pub(crate) game: Option<(&'s Game, &'s ExplicitPath)>,
 }
 
 /// The pairs of one time with the terms that say that a run may be in them.
-type Frontier = BTreeMap<(Residual, StateIx), Term>;
+type Frontier = BTreeMap<Pair, Term>;
 
 /// How a pair is reached: all of these hold.
 type Way = Vec<Term>;
@@ -55,15 +61,21 @@ pub(crate) fn sweep(sweep: &Sweep<'_, '_>, script: &mut Script) -> Option<()> {
     let mut runs = Runs::new(sweep)?;
     script.section(format!("no run of path {} defeats the others", sweep.names.path));
     let mut frontier = Frontier::new();
-    let mut ways: BTreeMap<(Residual, StateIx), Vec<Way>> = BTreeMap::new();
+    let mut ways: BTreeMap<Pair, Vec<Way>> = BTreeMap::new();
     for &state in &sweep.layers.at[0] {
         runs.enter(script, runs.root, state, None, 0, &[], &mut ways)?;
     }
     let mut total = 0;
     for time in 0..=runs.horizon {
+        runs.keep_open(time, &mut ways);
         runs.settle(script, time, std::mem::take(&mut ways), &mut frontier);
+        runs.avoid_mistakes(script, time, &frontier);
         total += frontier.len();
-        if total > sweep.encoder.limits.swept || runs.residuals.len() > MAX_RESIDUALS {
+        if total > sweep.encoder.limits.swept || runs.residuals.len() > sweep.encoder.limits.residuals {
+            return None;
+        }
+        let residuals: Vec<Residual> = frontier.keys().map(|pair| pair.0).collect();
+        if residuals.chunk_by(|a, b| a == b).count() > MAX_RESIDUALS {
             return None;
         }
         if (sweep.encoder.stop)() {
@@ -115,10 +127,32 @@ impl<'s, 'a> Runs<'s, 'a> {
             bits.insert(id, atoms.len() as u8);
             atoms.push(Atom::new(expr, sweep.path));
         }
-        let (residuals, root) = Residuals::new(formula, sweep.goal, &|id| bits.get(&id).copied());
+        let (fresh, root) = Residuals::new(formula, sweep.goal, &|id| bits.get(&id).copied());
+        // The game has numbered the same atoms alike, and its pairs are told by its residuals.
+        let residuals = sweep.game.map_or(fresh, |(game, _)| game.residuals.clone());
         let horizon = encoder.objective.paths.keys().map(|p| encoder.horizon(p)).max().unwrap_or(0);
         let paths = PathAtoms::new(encoder.problem, encoder.objective, sweep.env);
         Some(Runs { sweep, residuals, root, horizon, atoms, paths, terms: FxHashMap::default() })
+    }
+
+    /// Drops the pairs that the game leaves nothing to be decided about: [`Runs::avoid_mistakes`] keeps runs out of
+    /// them, or they lead to no harm.
+    fn keep_open(&self, time: u32, ways: &mut BTreeMap<Pair, Vec<Way>>) {
+        if let Some((game, _)) = self.sweep.game {
+            let open = game.pairs(time);
+            ways.retain(|pair, _| open.contains(pair));
+        }
+    }
+
+    /// Rules out the moves of the leading path after which a run that may be in a pair of the frontier wins.
+    fn avoid_mistakes(&self, script: &mut Script, time: u32, frontier: &Frontier) {
+        let Some((game, path)) = self.sweep.game else { return };
+        for mistake in game.mistakes(time) {
+            let pair = mistake.pair.and_then(|pair| frontier.get(&pair).copied());
+            if let Some(pair) = pair {
+                script.clause(&mistake.avoided(path, time as usize, Some(pair)));
+            }
+        }
     }
 
     /// The pairs of a time become terms: a single condition stands for itself, several make a symbol.
@@ -126,7 +160,7 @@ impl<'s, 'a> Runs<'s, 'a> {
         &self,
         script: &mut Script,
         time: u32,
-        ways: BTreeMap<(Residual, StateIx), Vec<Way>>,
+        ways: BTreeMap<Pair, Vec<Way>>,
         frontier: &mut Frontier,
     ) {
         frontier.clear();
@@ -161,7 +195,7 @@ impl<'s, 'a> Runs<'s, 'a> {
         script: &mut Script,
         time: u32,
         frontier: &Frontier,
-        ways: &mut BTreeMap<(Residual, StateIx), Vec<Way>>,
+        ways: &mut BTreeMap<Pair, Vec<Way>>,
     ) -> Option<()> {
         let graph = self.sweep.graph;
         let own_horizon = self.sweep.encoder.horizon(self.sweep.path);
@@ -191,7 +225,7 @@ impl<'s, 'a> Runs<'s, 'a> {
         action: Option<ActionId>,
         time: u32,
         given: &[Term],
-        ways: &mut BTreeMap<(Residual, StateIx), Vec<Way>>,
+        ways: &mut BTreeMap<Pair, Vec<Way>>,
     ) -> Option<()> {
         let mut bits = 0u64;
         let mut open: Vec<(usize, Term)> = Vec::new();

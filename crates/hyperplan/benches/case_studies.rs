@@ -2,21 +2,21 @@
 //!
 //! The largest size is 40 unless `HYPERPLAN_BENCH_SIZE` says otherwise.
 
+mod common;
+
+use common::{Case, OBJECTIVES, wanted_size};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use hyperplan_plan::{Config, Verdict, solve};
-use hyperplan_problem::{Overrides, Problem, read};
 use hyperplan_solver::Spec;
-use hyperplan_syntax::SourceMap;
 use std::hint::black_box;
-use std::path::{Path, PathBuf};
 
 fn case_studies(criterion: &mut Criterion) {
-    let largest = std::env::var("HYPERPLAN_BENCH_SIZE").ok().and_then(|n| n.parse().ok()).unwrap_or(40);
-    for objective in ["sp", "isr", "ar", "iso", "cso"] {
+    let largest = wanted_size().unwrap_or(40);
+    for objective in OBJECTIVES {
         let mut group = criterion.benchmark_group(objective);
         group.sample_size(10);
         for size in [10, 20, 40, 60].into_iter().filter(|n| *n <= largest) {
-            let problem = load(&format!("{objective}-{size}"));
+            let problem = Case::new(objective, size).read();
             group.bench_with_input(BenchmarkId::from_parameter(size), &problem, |bencher, problem| {
                 bencher.iter(|| {
                     let outcome =
@@ -32,16 +32,6 @@ fn case_studies(criterion: &mut Criterion) {
 
 fn config() -> Config {
     Config::new(Spec::Builtin)
-}
-
-fn load(name: &str) -> Problem {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs/case-studies");
-    let file: PathBuf = folder.join(format!("{name}.hp"));
-    let text = std::fs::read_to_string(&file).expect("the specs are part of the repository");
-    let loader = |path: &str| std::fs::read(folder.join(path)).map_err(|e| e.to_string());
-    let lowered = read(&mut SourceMap::new(), name, &text, &loader, &Overrides::none());
-    assert!(!lowered.has_errors(), "{name}: {:?}", lowered.diagnostics);
-    lowered.problem
 }
 
 criterion_group!(benches, case_studies);

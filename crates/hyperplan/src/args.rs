@@ -151,7 +151,7 @@ pub(crate) struct Solve {
     /// Asks this solver too whether what the other finds impossible is so
     #[arg(long, value_name = "SOLVER")]
     pub(crate) cross_check: Option<String>,
-    /// Most memory of each solver process
+    /// Most memory of each solver process; the builtin one stops when hyperplan itself has grown by so much
     #[arg(long, value_name = "MIB")]
     pub(crate) memory: Option<u64>,
     /// Finds the least value of a constant, such as T, for which the objective is realizable, and proves that
@@ -170,7 +170,7 @@ pub(crate) struct Solve {
     /// Prints the strategy unchecked
     #[arg(long)]
     pub(crate) no_verify: bool,
-    /// Seed of the solver
+    /// Seed of the solver; the same seed gives the same answer where no limit is reached
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) seed: u64,
 }

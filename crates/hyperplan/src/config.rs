@@ -34,7 +34,6 @@ impl Solve {
         }
         let (solver, rivals) = solvers(&args.solver)?;
         let plan = Config {
-            solver,
             rivals,
             cross_check: args.cross_check.as_deref().map(self::solver).transpose()?,
             quantifiers: quantifiers(args.encoding.quantifiers),
@@ -44,6 +43,7 @@ impl Solve {
             seed: args.seed,
             memory_mib: args.memory,
             queries: args.queries.clone(),
+            ..Config::new(solver)
         };
         Ok(Solve { plan, plot, save: args.save.clone() })
     }

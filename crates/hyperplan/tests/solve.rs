@@ -42,6 +42,12 @@ fn prints_the_promised_json() {
     for stage in ["read", "encode", "solve", "verify", "total"] {
         assert!(answer["seconds"][stage].is_number(), "{stage}");
     }
+    let size = |answer: &serde_json::Value| ["variables", "clauses"].map(|k| answer["size"][k].as_u64());
+    let [Some(variables), Some(clauses)] = size(answer) else { panic!("the query has a size") };
+    assert!(variables > 10 && clauses > variables / 2, "{variables} variables, {clauses} clauses");
+    let run = hyperplan(&["solve", "rooms.hp", "--objective", "sp", "-v"]);
+    let words = format!("largest query: {variables} variables, {clauses} clauses\n");
+    assert!(run.stdout.ends_with(&words), "{}", run.stdout);
 }
 
 #[test]
@@ -178,6 +184,42 @@ fn time_runs_out() {
     assert_eq!(run.json()[0]["verdict"], "unknown");
     let run = hyperplan(&["solve", "rooms.hp", "--timeout", "-1"]);
     assert_eq!(run.status, 2);
+}
+
+#[test]
+fn memory_runs_out() {
+    let run = hyperplan(&["solve", "case-studies/ar-60.hp", "--memory", "1", "--format", "json"]);
+    assert_eq!(run.status, 3, "{}", run.stderr);
+    assert_eq!(run.json()[0]["reason"], "memory limit of 1 MiB reached");
+}
+
+#[test]
+fn the_same_seed_gives_the_same_answer() {
+    for objective in ["sp", "isr", "ar", "iso", "cso"] {
+        for (quantifiers, seed) in [("auto", "0"), ("auto", "7"), ("cegis", "0"), ("cegis", "7")] {
+            let file = format!("case-studies/{objective}-10.hp");
+            let answer = |timeout: &str| {
+                let run = hyperplan(&[
+                    "solve",
+                    &file,
+                    "--format",
+                    "json",
+                    "--quantifiers",
+                    quantifiers,
+                    "--seed",
+                    seed,
+                    "--timeout",
+                    timeout,
+                ]);
+                let mut answer = run.json().remove(0);
+                answer.as_object_mut().expect("an object").remove("seconds").expect("the time it took");
+                answer
+            };
+            let first = answer("600");
+            assert_eq!(first["verdict"], "realizable", "{file}");
+            assert_eq!(first, answer("1200"), "{file}, {quantifiers}, seed {seed}");
+        }
+    }
 }
 
 #[test]

@@ -35,7 +35,9 @@ pub(crate) struct Cegis<'s, 'a, 'c> {
     pub(crate) most_checks: Option<u32>,
     /// For the leading block, see [`Query::with_slack`].
     pub(crate) slack: Option<u32>,
-    /// Whether the slack has lost nothing, so that nothing found means that there is nothing.
+    /// For the leading block, see [`Query::one_run`].
+    pub(crate) one_run: bool,
+    /// Whether nothing has been lost thereby, so that nothing found means that there is nothing.
     pub(crate) exact: bool,
 }
 
@@ -77,7 +79,17 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
         oracle: &'s mut Oracle<'c>,
         blocks: &'s [Vec<PathId>],
     ) -> Self {
-        Cegis { encoder, oracle, blocks, rounds: 0, checks: 0, most_checks: None, slack: None, exact: true }
+        Cegis {
+            encoder,
+            oracle,
+            blocks,
+            rounds: 0,
+            checks: 0,
+            most_checks: None,
+            slack: None,
+            one_run: false,
+            exact: true,
+        }
     }
 
     /// Paths of the block at `level` with which its player reaches the goal whatever the later blocks of the other
@@ -133,7 +145,11 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
     ) -> Result<Round<'s, 'a>, Stop> {
         let dialogue = self.oracle.open(1, incremental)?;
         let encoder = self.encoder;
-        let mut query = Query::new(encoder, known).with_slack(self.slack.filter(|_| level == 0));
+        let mut query = Query::new(encoder, known);
+        if level == 0 {
+            query = query.with_slack(self.slack).one_run(self.one_run);
+            query.explore_block(&self.blocks[level], goal)?;
+        }
         let mut env = query.empty_env();
         let mut recipes = vec![None; env.len()];
         for (at, path) in known.iter().enumerate() {

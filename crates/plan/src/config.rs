@@ -1,8 +1,8 @@
 //! What is asked for, and what comes out.
 
-use hyperplan_encode as encode;
+use hyperplan_encode::{self as encode, Limits};
 use hyperplan_problem::{PathId, Strategy};
-use hyperplan_solver::{self as solver, Deadline, Identity, Spec};
+use hyperplan_solver::{self as solver, Deadline, Identity, Size, Spec};
 use std::fmt;
 use std::path::PathBuf;
 use typed_index_collections::TiVec;
@@ -95,10 +95,12 @@ pub struct Config {
     pub verify: bool,
     /// Seed of the solver.
     pub seed: u64,
-    /// Memory limit of each solver process, in MiB.
+    /// Memory limit of each solver process, in MiB; for the embedded engine, how much this process may grow.
     pub memory_mib: Option<u64>,
     /// Where every query sent is kept.
     pub queries: Option<PathBuf>,
+    /// Budgets of the encoding.
+    pub limits: Limits,
 }
 
 impl Config {
@@ -116,6 +118,7 @@ impl Config {
             seed: 0,
             memory_mib: None,
             queries: None,
+            limits: Limits::default(),
         }
     }
 }
@@ -185,6 +188,8 @@ pub struct Outcome {
     pub states: States,
     /// Rounds: checks of the outermost query.
     pub iterations: u32,
+    /// The largest query, as the solver got it.
+    pub size: Size,
     /// Where the time went.
     pub seconds: Seconds,
     /// What the user should know besides.

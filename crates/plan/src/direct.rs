@@ -136,6 +136,7 @@ fn leading<'e, 'a>(
     slack: Option<u32>,
 ) -> Result<Direct<'e, 'a>, Error> {
     let mut query = Query::new(encoder, &[]).with_slack(slack);
+    query.explore_block(&blocks[0], goal)?;
     let mut env = query.empty_env();
     for &path in &blocks[0] {
         env[usize::from(path)] = Some(query.declare(path, goal)?);

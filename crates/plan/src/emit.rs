@@ -17,6 +17,12 @@ pub struct Emitted {
 }
 
 impl Emitted {
+    /// The query.
+    #[must_use]
+    pub fn script(&self) -> &Script {
+        &self.script
+    }
+
     /// Writes the benchmark.
     ///
     /// # Errors

@@ -21,6 +21,7 @@ mod solve;
 
 pub use config::{Config, EmitConfig, Error, Outcome, Quantifiers, Seconds, States, Verdict, Verified};
 pub use emit::{Emitted, emit};
+pub use hyperplan_encode::Limits;
 pub use lint::{Budget, Lints, lint, lint_systems};
 pub use minimize::{Family, Least, MinimizeError, minimize};
 pub use solve::solve;

@@ -16,8 +16,9 @@
 use crate::config::{Config, Error, Outcome, Seconds, Verdict};
 use crate::lasting::{conjuncts, lasting};
 use crate::solve::solve_sharing;
-use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Limits, Query, States};
+use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Query, States};
 use hyperplan_problem::{FormulaId, Node, Objective, Problem, Quantifier};
+use hyperplan_solver::Size;
 use std::ops::RangeInclusive;
 use std::time::Instant;
 
@@ -29,7 +30,7 @@ pub struct Least {
     pub value: i64,
     /// The problem with this value.
     pub problem: Problem,
-    /// The answer for this value; times and rounds are those of all values tried.
+    /// The answer for this value; times, rounds and the largest query are those of all values tried.
     pub outcome: Outcome,
     /// Every smaller value of the range is unrealizable.
     pub proved: i64,
@@ -82,6 +83,7 @@ pub fn minimize<E>(
         high,
         seconds: Seconds::default(),
         rounds: 0,
+        largest: Size::default(),
     };
     search.refute()?;
     search.run()
@@ -114,6 +116,7 @@ struct Search<'a, E> {
     high: i64,
     seconds: Seconds,
     rounds: u32,
+    largest: Size,
 }
 
 /// An answer for a value.
@@ -261,6 +264,7 @@ impl<E> Search<'_, E> {
         self.seconds.solve += outcome.seconds.solve;
         self.seconds.verify += outcome.seconds.verify;
         self.rounds += outcome.iterations;
+        self.largest = self.largest.max(outcome.size);
         Ok(Solved { value, problem, outcome })
     }
 
@@ -268,6 +272,7 @@ impl<E> Search<'_, E> {
         let Solved { value, problem, mut outcome } = solved;
         outcome.seconds = self.seconds;
         outcome.iterations = self.rounds;
+        outcome.size = self.largest;
         Least { value, problem, outcome, proved: self.low, undecided }
     }
 }
@@ -281,8 +286,7 @@ fn hopeless(
     graphs: &Graphs,
 ) -> Result<bool, encode::Error> {
     let stop = || config.deadline.passed();
-    let encoder =
-        Encoder::sharing(problem, objective, config.states.wish(), Limits::default(), &stop, graphs)?;
+    let encoder = Encoder::sharing(problem, objective, config.states.wish(), config.limits, &stop, graphs)?;
     let exists = objective.paths.first().is_some_and(|path| path.quantifier == Quantifier::Exists);
     if !exists || encoder.states != States::Onehot {
         return Ok(false);

@@ -3,7 +3,7 @@
 use crate::config::{Config, Error};
 use crate::evidence::{Claim, Evidence};
 use hyperplan_smt::{Model, Script, Term, check_model};
-use hyperplan_solver::{self as solver, Answer, Identity, Options, Session, Spec, open};
+use hyperplan_solver::{self as solver, Answer, Identity, Options, Session, Size, Spec, open};
 use std::time::Instant;
 
 /// Why a search ended without an answer.
@@ -31,11 +31,20 @@ pub(crate) struct Oracle<'c> {
     pub(crate) notes: Vec<String>,
     /// Time spent waiting for solvers.
     pub(crate) solving: f64,
+    /// The largest query.
+    pub(crate) largest: Size,
 }
 
 impl<'c> Oracle<'c> {
     pub(crate) fn new(config: &'c Config) -> Self {
-        Oracle { config, identity: None, unproved: None, notes: Vec::new(), solving: 0.0 }
+        Oracle {
+            config,
+            identity: None,
+            unproved: None,
+            notes: Vec::new(),
+            solving: 0.0,
+            largest: Size::default(),
+        }
     }
 
     /// Starts a dialogue about queries with so many blocks of quantifiers, the leading one as free symbols.
@@ -63,6 +72,7 @@ impl<'c> Oracle<'c> {
         let start = Instant::now();
         let answer = dialogue.session.check(script, &[], &self.config.deadline);
         self.solving += start.elapsed().as_secs_f64();
+        self.largest = self.largest.max(dialogue.session.size());
         let answer = answer?;
         if answer != Answer::Sat {
             self.introduce(dialogue);

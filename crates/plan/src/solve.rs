@@ -6,15 +6,15 @@ use crate::direct;
 use crate::oracle::{Oracle, Stop};
 use crate::prepare::{blocks, decided, no_dead_ends, without_paths};
 use crate::race::race;
-use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Limits};
+use hyperplan_encode::{self as encode, Encoder, Goal, Graphs};
 use hyperplan_problem::{Objective, PathId, Problem, Quantifier, Strategy};
-use hyperplan_solver::Spec;
+use hyperplan_solver::{Size, Spec};
 use hyperplan_verify as verify;
 use std::time::Instant;
 
-/// Runs that are hardly longer than the shortest make small queries, so they are tried first; then all, if there are
-/// others.
-const SLACKS: [Option<u32>; 2] = [Some(4), None];
+/// Runs that are hardly longer than the shortest make small queries, so they are tried first; then longer ones, and
+/// then all, if there are others.
+const SLACKS: [Option<u32>; 4] = [Some(4), Some(16), Some(64), None];
 
 /// After so many checks a search over infinitely many choices is taken to have no end.
 const ENDLESS: u32 = 200;
@@ -28,7 +28,8 @@ pub fn solve(problem: &Problem, objective: &Objective, config: &Config) -> Resul
     solve_sharing(problem, objective, config, &Graphs::default())
 }
 
-/// As [`solve`], with systems that were enumerated before.
+/// As [`solve`], with systems that were enumerated before. Where the choice of states is ours and too many can matter,
+/// the search goes on symbolically.
 pub(crate) fn solve_sharing(
     problem: &Problem,
     objective: &Objective,
@@ -38,9 +39,28 @@ pub(crate) fn solve_sharing(
     if !config.rivals.is_empty() {
         return race(problem, objective, config);
     }
+    match attempt(problem, objective, config, graphs) {
+        Err(Error::Encode(error @ encode::Error::TooLarge { .. })) if config.states == States::Auto => {
+            let symbolic = Config { states: States::Bitvec, ..config.clone() };
+            let mut outcome = attempt(problem, objective, &symbolic, graphs)?;
+            outcome
+                .notes
+                .push(format!("states are bit-vectors, as there are too many to write one by one: {error}"));
+            Ok(outcome)
+        }
+        answer => answer,
+    }
+}
+
+fn attempt(
+    problem: &Problem,
+    objective: &Objective,
+    config: &Config,
+    graphs: &Graphs,
+) -> Result<Outcome, Error> {
     let start = Instant::now();
     let stop = || config.deadline.passed();
-    let (wish, limits) = (config.states.wish(), Limits::default());
+    let (wish, limits) = (config.states.wish(), config.limits);
     let encoder = Encoder::sharing(problem, objective, wish, limits, &stop, graphs)?;
     if encoder.states == encode::States::Int && config.solver == Spec::Builtin {
         return Err(needs_arithmetic(&encoder));
@@ -67,6 +87,7 @@ pub(crate) fn solve_sharing(
         Seconds { encode: (total - oracle.solving).max(0.0), solve: oracle.solving, verify: 0.0 };
     outcome.solver = oracle.identity();
     outcome.notes.append(&mut oracle.notes);
+    outcome.size = oracle.largest;
     match answer {
         Err(Stop::Error(Error::Encode(encode::Error::Interrupted))) => {
             outcome.reason = Some(config.deadline.reason().to_owned());
@@ -116,6 +137,7 @@ fn unknown(objective: &Objective, encoder: &Encoder<'_>, config: &Config) -> Out
         quantifiers,
         states: States::from(encoder.states),
         iterations: 0,
+        size: Size::default(),
         seconds: Seconds::default(),
         notes: Vec::new(),
     }
@@ -155,6 +177,7 @@ fn search(
             let patient = choice != Quantifiers::Auto || is_finite(encoder);
             let mut cegis = Cegis::new(encoder, oracle, &blocks);
             (cegis.slack, cegis.most_checks) = (slack, (!patient).then_some(ENDLESS));
+            cegis.one_run = slack.is_some() && config.quantifiers == Quantifiers::Auto;
             let known = vec![None; objective.paths.len()];
             let found = cegis.find(0, &known, &goal, 1);
             outcome.iterations += cegis.rounds;

@@ -41,6 +41,9 @@ pub struct Answer {
     pub states: String,
     /// Rounds of the counterexample loop; 1 for a single query.
     pub iterations: u32,
+    /// The largest query; nothing if no solver was asked.
+    #[serde(default)]
+    pub size: Size,
     /// Wall time of each stage.
     pub seconds: Seconds,
     /// What is known of the least value of a constant, where that was asked.
@@ -103,6 +106,15 @@ pub struct Solver {
     pub name: String,
     /// Its version, as it tells.
     pub version: String,
+}
+
+/// How large a query was, as the solver got it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Size {
+    /// SAT variables of the builtin solver; of others, declared symbols.
+    pub variables: usize,
+    /// Clauses of the builtin solver; of others, assertions.
+    pub clauses: usize,
 }
 
 /// Wall time in seconds.

@@ -20,4 +20,4 @@ pub use error::Error;
 #[doc(hidden)]
 pub use external::understand_output;
 pub use external::{Catalog, ConfigError, Found, Install, Profile, discover};
-pub use session::{Answer, Identity, Options, Session, Spec, open};
+pub use session::{Answer, Identity, Options, Session, Size, Spec, open};

@@ -31,6 +31,15 @@ pub struct Identity {
     pub version: String,
 }
 
+/// How much a solver was told.
+#[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug, Default)]
+pub struct Size {
+    /// Assertions; of the embedded engine, the clauses that they became.
+    pub clauses: usize,
+    /// Declared symbols; of the embedded engine, the SAT variables.
+    pub variables: usize,
+}
+
 /// A dialogue with a solver about one growing script.
 pub trait Session {
     /// Feeds what is new in the script since the last call, then asks whether it is satisfiable
@@ -49,6 +58,9 @@ pub trait Session {
 
     /// Who answers.
     fn identity(&self) -> Identity;
+
+    /// How much it was told up to the last check.
+    fn size(&self) -> Size;
 }
 
 /// Which solver to use.
@@ -129,7 +141,8 @@ pub struct Options {
     pub nested: bool,
     /// More than one check will be asked for.
     pub incremental: bool,
-    /// Memory limit of a solver process, in MiB. The embedded engine shares our memory and has none.
+    /// Memory limit of a solver process, in MiB. Of the embedded engine, which shares our memory: how much this
+    /// process may grow in physical memory after the session was opened.
     pub memory_mib: Option<u64>,
     /// A directory to keep every query in: one replayable file per solver process, or per check of the
     /// embedded engine.

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use common::installed;
 use hyperplan_smt::{Script, Sort, Term, Terms};
-use hyperplan_solver::{Answer, Deadline, Error, Options, Spec, open};
+use hyperplan_solver::{Answer, Deadline, Error, Options, Size, Spec, open};
 
 fn booleans(terms: &mut Terms, count: u32) -> Vec<Term> {
     let stem = terms.stem("x");
@@ -189,5 +189,30 @@ fn the_engine_refuses_quantifiers_for_good() {
     for _ in 0..2 {
         let error = session.check(&script, &[], &Deadline::never()).expect_err("quantified");
         assert!(error.is_unsupported() && error.to_string().contains("z3"), "{error}");
+    }
+}
+
+#[test]
+fn a_session_knows_how_much_it_was_told() {
+    let mut specs: Vec<Spec> = installed(&["z3", "cvc5", "yices"]).into_iter().map(Spec::Profile).collect();
+    if cfg!(any(feature = "cadical", feature = "batsat")) {
+        specs.push(Spec::Builtin);
+    }
+    for spec in specs {
+        let mut script = Script::new();
+        let xs = booleans(&mut script.terms, 5);
+        let options = Options { incremental: true, ..Options::default() };
+        let mut session = open(&spec, &options).expect("it is installed");
+        let mut told = Vec::new();
+        for pair in xs[..4].chunks(2) {
+            script.clause(pair);
+            session.check(&script, &[], &Deadline::never()).expect("an answer");
+            told.push(session.size());
+        }
+        // The engine has a variable and a clause of its own, for what is true.
+        let own = usize::from(spec == Spec::Builtin);
+        let expected = [(1, 2), (2, 4)];
+        let expected = expected.map(|(c, v)| Size { clauses: c + own, variables: v + own });
+        assert_eq!(told, expected, "{spec:?}");
     }
 }

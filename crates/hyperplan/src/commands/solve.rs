@@ -8,7 +8,9 @@ use crate::load::Loaded;
 use crate::output::{Output, write_file};
 use crate::report::{json, write_picture};
 use hyperplan_plan::{self as plan, MinimizeError};
-use hyperplan_problem::answer::{Answer, Below, Ordered, Seconds, Solver, Verdict, Verified, to_witness};
+use hyperplan_problem::answer::{
+    Answer, Below, Ordered, Seconds, Size, Solver, Verdict, Verified, to_witness,
+};
 use hyperplan_problem::{Objective, Quantifier, Strategy, Trace};
 use hyperplan_render::{Board, Scene, TextStyle, actions_line, table, text_map};
 use std::time::{Duration, Instant};
@@ -138,6 +140,7 @@ fn answer(
         quantifiers: outcome.quantifiers.to_string(),
         states: outcome.states.to_string(),
         iterations: outcome.iterations,
+        size: Size { variables: outcome.size.variables, clauses: outcome.size.clauses },
         seconds: Seconds {
             read: rounded(loaded.time.as_secs_f64()),
             encode: rounded(outcome.seconds.encode),
@@ -247,7 +250,7 @@ impl<'a> Found<'a> {
     }
 
     fn effort(&self, verbose: bool) -> String {
-        let Answer { solver, quantifiers, states, iterations, seconds, .. } = self.answer;
+        let Answer { solver, quantifiers, states, iterations, size, seconds, .. } = self.answer;
         let rounds = if *iterations == 1 { "round" } else { "rounds" };
         let name = format!("{} {}", solver.name, solver.version);
         let mut text = format!(
@@ -257,8 +260,10 @@ impl<'a> Found<'a> {
         );
         if verbose {
             let Seconds { read, encode, solve, verify, .. } = seconds;
+            let Size { variables, clauses } = size;
             text.push_str(&format!(
-                "read {read:.3} s, encode {encode:.3} s, solve {solve:.3} s, verify {verify:.3} s\n"
+                "read {read:.3} s, encode {encode:.3} s, solve {solve:.3} s, verify {verify:.3} s\n\
+                 largest query: {variables} variables, {clauses} clauses\n"
             ));
         }
         text

@@ -29,6 +29,8 @@ pub struct Printer {
     height: Vec<u8>,
     /// Symbols to be declared.
     undeclared: Vec<Term>,
+    /// How many have been.
+    declared: usize,
     /// The free variables, with the number of nodes that they were computed for.
     free: Option<(usize, Free)>,
     features: Features,
@@ -88,6 +90,12 @@ impl Printer {
         }
     }
 
+    /// How many symbols have been declared.
+    #[must_use]
+    pub fn declared(&self) -> usize {
+        self.declared
+    }
+
     /// Declares the symbols that were found since the last call.
     ///
     /// # Errors
@@ -95,6 +103,7 @@ impl Printer {
     pub fn declare(&mut self, w: &mut impl io::Write, terms: &Terms) -> io::Result<()> {
         let mut symbols = std::mem::take(&mut self.undeclared);
         symbols.sort_unstable();
+        self.declared += symbols.len();
         for symbol in symbols {
             w.write_all(b"(declare-fun ")?;
             SymbolName::new(terms, symbol).sym_to_smt2(w, ()).map_err(io_error)?;

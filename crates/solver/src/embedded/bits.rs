@@ -4,6 +4,7 @@
 use rustsat::types::{Lit, Var};
 
 use super::backend::Backend;
+use crate::session::Size;
 
 /// Makes literals and clauses.
 pub(super) struct Gates {
@@ -18,6 +19,11 @@ impl Gates {
         let top = Var::new(0).pos_lit();
         sat.clause(&[top]);
         Gates { sat, next: 1, top }
+    }
+
+    /// What the SAT solver was given.
+    pub(super) fn size(&self) -> Size {
+        Size { clauses: self.sat.clauses(), variables: self.next as usize }
     }
 
     pub(super) fn constant(&self, value: bool) -> Lit {

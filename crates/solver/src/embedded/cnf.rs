@@ -10,11 +10,15 @@ use hyperplan_smt::{Op, Script, Sort, Term, Terms, Value, View};
 use rustsat::types::Lit;
 
 use super::bits::Gates;
+use super::budget::{Budget, Halt};
 use crate::error::Error;
 
 const POSITIVE: u8 = 1;
 const NEGATIVE: u8 = 2;
 const BOTH: u8 = 3;
+
+/// How many clauses are added between two looks at the budget: a few milliseconds.
+const STRIDE: usize = 1 << 12;
 
 /// What of an arena has been turned into clauses.
 pub(super) struct Cnf {
@@ -26,9 +30,13 @@ pub(super) struct Cnf {
     /// Per node: where in `bits` a bit-vector's literals start.
     starts: Vec<Option<u32>>,
     bits: Vec<Lit>,
+    /// Assertions whose clauses are to be added.
+    asserted: Vec<Term>,
     /// Nodes whose clauses are to be added, with the directions needed.
     pending: Vec<(Term, u8)>,
     clause: Vec<Lit>,
+    /// How many clauses there will be when the budget is looked at next.
+    look: usize,
 }
 
 impl Cnf {
@@ -39,29 +47,28 @@ impl Cnf {
             done: Vec::new(),
             starts: Vec::new(),
             bits: Vec::new(),
+            asserted: Vec::new(),
             pending: Vec::new(),
             clause: Vec::new(),
+            look: 0,
         }
     }
 
-    /// Adds an assertion, a disjunction.
-    pub(super) fn assert(&mut self, script: &Script, literals: &[Term]) -> Result<(), Error> {
+    /// Takes an assertion, a disjunction; [`Cnf::finish`] adds what clauses are missing.
+    pub(super) fn assert(&mut self, script: &Script, literals: &[Term]) {
         let terms = &script.terms;
         self.grow(terms);
         if let &[only] = literals {
-            self.assert_one(terms, only);
+            self.asserted.push(only);
         } else {
             self.assert_clause(terms, literals.iter().copied());
         }
-        self.finish(terms)
     }
 
-    /// The literal of a Boolean term that will be assumed to be true.
-    pub(super) fn assumption(&mut self, script: &Script, t: Term) -> Result<Lit, Error> {
+    /// The literal of a Boolean term that will be assumed to be true; [`Cnf::finish`] adds its clauses.
+    pub(super) fn assumption(&mut self, script: &Script, t: Term) -> Lit {
         self.grow(&script.terms);
-        let literal = self.literal(&script.terms, t, POSITIVE);
-        self.finish(&script.terms)?;
-        Ok(literal)
+        self.literal(&script.terms, t, POSITIVE)
     }
 
     /// The literal of a declared Boolean symbol, if it has occurred.
@@ -84,15 +91,10 @@ impl Cnf {
 
     /// Conjunctions at the top are taken apart, disjunctions become clauses.
     fn assert_one(&mut self, terms: &Terms, t: Term) {
-        let mut stack = vec![t];
-        while let Some(t) = stack.pop() {
-            match terms.view(t) {
-                View::App(Op::And, conjuncts) if !t.is_negated() => stack.extend_from_slice(conjuncts),
-                View::App(Op::And, conjuncts) => {
-                    self.assert_clause(terms, conjuncts.iter().map(|&c| !c));
-                }
-                _ => self.assert_clause(terms, std::iter::once(t)),
-            }
+        match terms.view(t) {
+            View::App(Op::And, conjuncts) if !t.is_negated() => self.asserted.extend_from_slice(conjuncts),
+            View::App(Op::And, conjuncts) => self.assert_clause(terms, conjuncts.iter().map(|&c| !c)),
+            _ => self.assert_clause(terms, std::iter::once(t)),
         }
     }
 
@@ -126,23 +128,39 @@ impl Cnf {
         literal
     }
 
-    /// Adds the clauses of all pending nodes and of what they need.
-    fn finish(&mut self, terms: &Terms) -> Result<(), Error> {
-        while let Some((t, needed)) = self.pending.pop() {
-            let missing = needed & !self.done[t.index()];
-            if missing != 0 {
-                self.done[t.index()] |= missing;
-                if let Err(error) = self.node(terms, t, missing) {
-                    self.pending.clear();
-                    return Err(error);
+    /// Adds the clauses of everything asserted and assumed, and of what they need. Where it halts for want of time
+    /// or memory, it can be called again.
+    pub(super) fn finish(&mut self, terms: &Terms, budget: &Budget) -> Result<(), Halt> {
+        loop {
+            self.afford(budget)?;
+            if let Some((t, needed)) = self.pending.pop() {
+                let missing = needed & !self.done[t.index()];
+                if missing != 0 {
+                    self.node(terms, t, missing, budget)?;
                 }
+            } else if let Some(t) = self.asserted.pop() {
+                self.assert_one(terms, t);
+            } else {
+                return Ok(());
             }
         }
+    }
+
+    /// Looks at the budget now and then.
+    fn afford(&mut self, budget: &Budget) -> Result<(), Halt> {
+        if self.gates.sat.clauses() < self.look {
+            return Ok(());
+        }
+        if budget.spent() {
+            return Err(Halt::Spent);
+        }
+        self.look = self.gates.sat.clauses() + STRIDE;
         Ok(())
     }
 
-    /// Adds the clauses of one Boolean node in the directions given.
-    fn node(&mut self, terms: &Terms, t: Term, directions: u8) -> Result<(), Error> {
+    /// Adds the clauses of one Boolean node in the directions given, or leaves it pending.
+    fn node(&mut self, terms: &Terms, t: Term, directions: u8, budget: &Budget) -> Result<(), Halt> {
+        self.done[t.index()] |= directions;
         let v = self.literal(terms, t, 0);
         match terms.view(t) {
             View::App(Op::And, conjuncts) => self.conjunction(terms, v, conjuncts, directions),
@@ -162,15 +180,20 @@ impl Cnf {
                 );
             }
             View::App(op @ (Op::Eq | Op::BvUlt | Op::BvSlt), &[a, b]) => {
-                let (a, b) = (self.vector(terms, a)?, self.vector(terms, b)?);
+                let bits =
+                    self.vector(terms, a, budget).and_then(|a| Ok((a, self.vector(terms, b, budget)?)));
+                let (a, b) = bits.inspect_err(|_| {
+                    self.done[t.index()] &= !directions;
+                    self.pending.push((t, directions));
+                })?;
                 let g = match op {
                     Op::Eq => self.gates.equal(&a, &b),
                     _ => self.gates.less(&a, &b, op == Op::BvSlt),
                 };
                 self.directed(v, directions, &[&[g]], &[&[!g]]);
             }
-            View::Bound(..) | View::Forall(..) => return Err(unsupported("quantifiers")),
-            _ => return Err(unsupported("integers and reals")),
+            View::Bound(..) | View::Forall(..) => return Err(unsupported("quantifiers").into()),
+            _ => return Err(unsupported("integers and reals").into()),
         }
         Ok(())
     }
@@ -207,9 +230,10 @@ impl Cnf {
     }
 
     /// The bits of a bit-vector term, after those of everything that it is built from.
-    fn vector(&mut self, terms: &Terms, t: Term) -> Result<Vec<Lit>, Error> {
+    fn vector(&mut self, terms: &Terms, t: Term, budget: &Budget) -> Result<Vec<Lit>, Halt> {
         let mut stack = vec![t];
         while let Some(&t) = stack.last() {
+            self.afford(budget)?;
             if self.starts[t.index()].is_some() {
                 stack.pop();
                 continue;
@@ -219,7 +243,7 @@ impl Cnf {
                 match terms.sort(child) {
                     Sort::BitVec(_) if self.starts[child.index()].is_none() => stack.push(child),
                     Sort::BitVec(_) | Sort::Bool => {}
-                    Sort::Int | Sort::Real => return Err(unsupported("integers and reals")),
+                    Sort::Int | Sort::Real => return Err(unsupported("integers and reals").into()),
                 }
             }
             if stack.len() == before {

@@ -4,21 +4,21 @@ use hyperplan_smt::{Header, Script, Sort, Term, Value, WriteOptions, write_scrip
 
 use super::backend::Backend;
 use super::bits::Gates;
+use super::budget::{Budget, Halt, Memory};
 use super::cnf::Cnf;
 use crate::deadline::Deadline;
 use crate::error::Error;
-use crate::session::{Answer, Identity, Options, Quantifiers, Session};
+use crate::session::{Answer, Identity, Options, Quantifiers, Session, Size};
 use crate::transcript::{cannot_keep, numbered};
-
-/// How many assertions are encoded between two looks at the clock.
-const STRIDE: usize = 1 << 12;
 
 /// The embedded engine.
 pub(crate) struct Engine {
     options: Options,
+    /// The limit, counted from the start of the session.
+    memory: Option<Memory>,
     cnf: Cnf,
     version: String,
-    /// How many assertions have been encoded.
+    /// How many assertions have been taken.
     fed: usize,
     has_model: bool,
     /// What of the script cannot be handled: from then on there is no answer.
@@ -30,11 +30,13 @@ pub(crate) struct Engine {
 impl Engine {
     pub(crate) fn new(options: &Options) -> Result<Engine, Error> {
         options.demand_at_most(Quantifiers::None, "builtin")?;
+        let memory = options.memory_mib.map(Memory::growing_by).transpose()?;
         let backend = Backend::new(options.seed)?;
         let version = format!("{} ({})", env!("CARGO_PKG_VERSION"), backend.signature());
         let cnf = Cnf::new(Gates::new(backend));
         Ok(Engine {
             options: options.clone(),
+            memory,
             cnf,
             version,
             fed: 0,
@@ -54,42 +56,24 @@ impl Engine {
         write_script(&mut file, script, &options).map_err(|source| cannot_keep(directory, source))
     }
 
-    /// Encodes what is new; false if the deadline came first.
-    fn feed(&mut self, script: &Script, deadline: &Deadline) -> Result<bool, Error> {
+    /// Whether the script is satisfiable under the assumptions, after encoding what is new of it.
+    fn answer(&mut self, script: &Script, assumptions: &[Term], budget: &Budget) -> Result<bool, Halt> {
+        self.cnf.gates.sat.ready(budget)?;
+        self.cnf.finish(&script.terms, budget)?;
         while self.fed < script.len() {
-            if self.fed.is_multiple_of(STRIDE) && deadline.passed() {
-                return Ok(false);
-            }
-            self.cnf.assert(script, script.assertion(self.fed))?;
+            self.cnf.assert(script, script.assertion(self.fed));
             self.fed += 1;
-        }
-        Ok(true)
-    }
-
-    fn answer(
-        &mut self,
-        script: &Script,
-        assumptions: &[Term],
-        deadline: &Deadline,
-    ) -> Result<Answer, Error> {
-        if !self.feed(script, deadline)? {
-            return Ok(Answer::Unknown(deadline.reason().to_owned()));
+            self.cnf.finish(&script.terms, budget)?;
         }
         let mut literals = Vec::with_capacity(assumptions.len());
         for &t in assumptions.iter().filter(|&&t| t != Term::TRUE) {
-            literals.push(self.cnf.assumption(script, t)?);
+            literals.push(self.cnf.assumption(script, t));
+            self.cnf.finish(&script.terms, budget)?;
         }
-        match self.cnf.gates.sat.solve(&literals, deadline)? {
-            Some(true) => {
-                self.has_model = true;
-                Ok(Answer::Sat)
-            }
-            Some(false) => {
-                self.refuted = literals.is_empty();
-                Ok(Answer::Unsat)
-            }
-            None => Ok(Answer::Unknown(deadline.reason().to_owned())),
-        }
+        let answer = self.cnf.gates.sat.solve(&literals, budget)?;
+        self.has_model = answer;
+        self.refuted = !answer && literals.is_empty();
+        Ok(answer)
     }
 }
 
@@ -103,11 +87,18 @@ impl Session for Engine {
         if self.refuted {
             return Ok(Answer::Unsat);
         }
-        let answer = self.answer(script, assumptions, deadline);
-        if let Err(Error::Unsupported { what }) = &answer {
-            self.unsupported = Some(what.clone());
+        let budget = Budget::new(deadline, self.memory.as_ref());
+        match self.answer(script, assumptions, &budget) {
+            Ok(true) => Ok(Answer::Sat),
+            Ok(false) => Ok(Answer::Unsat),
+            Err(Halt::Spent) => Ok(Answer::Unknown(budget.reason())),
+            Err(Halt::Error(error)) => {
+                if let Error::Unsupported { what } = &error {
+                    self.unsupported = Some(what.clone());
+                }
+                Err(error)
+            }
         }
-        answer
     }
 
     fn values(&mut self, script: &Script, symbols: &[Term]) -> Result<Vec<Value>, Error> {
@@ -139,5 +130,9 @@ impl Session for Engine {
 
     fn identity(&self) -> Identity {
         Identity { name: "builtin".to_owned(), version: self.version.clone() }
+    }
+
+    fn size(&self) -> Size {
+        self.cnf.gates.size()
     }
 }

@@ -10,7 +10,7 @@ use super::profile::{Assumptions, Profile};
 use super::program::Program;
 use crate::deadline::Deadline;
 use crate::error::Error;
-use crate::session::{Answer, Identity, Options, Quantifiers, Session};
+use crate::session::{Answer, Identity, Options, Quantifiers, Session, Size};
 
 /// How much text is gathered before it is sent.
 const PIECE: usize = 1 << 16;
@@ -32,7 +32,8 @@ fn session(program: Program, options: &Options) -> Box<dyn Session> {
         return Box::new(OneShot::new(program, options));
     }
     let options = options.clone();
-    Box::new(Dialogue { program, options, running: None, deadline: Deadline::never(), has_model: false })
+    let deadline = Deadline::never();
+    Box::new(Dialogue { program, options, running: None, deadline, has_model: false, told: Size::default() })
 }
 
 impl Program {
@@ -68,6 +69,7 @@ struct Dialogue {
     running: Option<Running>,
     deadline: Deadline,
     has_model: bool,
+    told: Size,
 }
 
 /// What belongs to one process.
@@ -216,6 +218,7 @@ impl Dialogue {
         deadline: &Deadline,
     ) -> Result<Answer, Error> {
         self.feed(&mut running, script, assumptions, deadline)?;
+        self.told = Size { clauses: running.fed, variables: running.printer.declared() };
         // On an error or at the deadline the process is dropped, which kills it.
         let answer = match running.exchange.answer(deadline)? {
             None => return Ok(Answer::Unknown(deadline.reason().to_owned())),
@@ -276,6 +279,10 @@ impl Session for Dialogue {
 
     fn identity(&self) -> Identity {
         Identity { name: self.program.name.clone(), version: self.program.version.get() }
+    }
+
+    fn size(&self) -> Size {
+        self.told
     }
 }
 

@@ -13,7 +13,7 @@ use super::program::Program;
 use super::watchdog::watch_file;
 use crate::deadline::Deadline;
 use crate::error::Error;
-use crate::session::{Answer, Identity, Options, Session};
+use crate::session::{Answer, Identity, Options, Session, Size};
 
 /// Writes each query into a temporary file, with the questions for all values after the check, since there is no
 /// asking later. What a solver says to these after `unsat` does not matter.
@@ -21,15 +21,17 @@ pub(super) struct OneShot {
     program: Program,
     options: Options,
     model: Option<BTreeMap<Term, Value>>,
+    told: Size,
 }
 
 impl OneShot {
     pub(super) fn new(program: Program, options: &Options) -> OneShot {
-        OneShot { program, options: options.clone(), model: None }
+        OneShot { program, options: options.clone(), model: None, told: Size::default() }
     }
 
     fn run(&mut self, script: &Script, assumptions: &[Term], deadline: &Deadline) -> Result<Answer, Error> {
         let (text, symbols) = self.query(script, assumptions)?;
+        self.told = Size { clauses: script.len(), variables: symbols.len() };
         let file = temporary(&text)
             .map_err(|source| Error::Io { what: "cannot write the query".to_owned(), source })?;
         let path = file.path().display().to_string();
@@ -113,5 +115,9 @@ impl Session for OneShot {
 
     fn identity(&self) -> Identity {
         Identity { name: self.program.name.clone(), version: self.program.version.get() }
+    }
+
+    fn size(&self) -> Size {
+        self.told
     }
 }

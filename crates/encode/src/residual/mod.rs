@@ -4,6 +4,10 @@
 //! which weakens the formula. A path along which the weakened formula becomes `false` can therefore satisfy the
 //! formula together with no choice of the other paths. [`crate::reach`] uses this to prune.
 
+mod debt;
+
+pub(crate) use debt::Settling;
+
 use crate::goal::Goal;
 use hyperplan_problem::{Formula, FormulaId, Interval, Node, TemporalOp};
 use rustc_hash::FxHashMap;
@@ -51,6 +55,7 @@ pub(crate) struct Now {
 }
 
 /// All residuals of one formula.
+#[derive(Clone)]
 pub(crate) struct Residuals {
     shapes: Vec<Shape>,
     index: FxHashMap<Shape, Residual>,

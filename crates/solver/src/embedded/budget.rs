@@ -1,0 +1,90 @@
+//! What a check may spend: time until its deadline, and memory.
+
+use std::cell::Cell;
+use std::time::{Duration, Instant};
+
+use crate::deadline::Deadline;
+use crate::error::Error;
+
+/// How often memory is looked at: the system takes some microseconds to answer.
+const INTERVAL: Duration = Duration::from_millis(10);
+
+/// The memory of this process must not pass a limit.
+#[derive(Clone, Debug)]
+pub(super) struct Memory {
+    mib: u64,
+    /// Most bytes of the process.
+    most: u64,
+    looked: Cell<Option<Instant>>,
+}
+
+impl Memory {
+    /// From now on the process may grow by so many MiB: what came before, such as a large map, is not the engine's.
+    ///
+    /// # Errors
+    /// Where the system does not tell how much memory is in use.
+    pub(super) fn growing_by(mib: u64) -> Result<Memory, Error> {
+        let Some(used) = used() else {
+            let what = "this system does not tell how much memory is in use, so that the builtin solver cannot \
+                        limit its own: leave out the limit, or use another solver";
+            return Err(Error::Unsupported { what: what.to_owned() });
+        };
+        let most = used.saturating_add(mib.saturating_mul(1 << 20));
+        Ok(Memory { mib, most, looked: Cell::new(None) })
+    }
+
+    fn spent(&self) -> bool {
+        let now = Instant::now();
+        if self.looked.get().is_some_and(|then| now < then + INTERVAL) {
+            return false;
+        }
+        self.looked.set(Some(now));
+        used().is_some_and(|used| used > self.most)
+    }
+}
+
+/// Bytes of this process in physical memory.
+fn used() -> Option<u64> {
+    memory_stats::memory_stats().map(|usage| usage.physical_mem as u64)
+}
+
+/// The limits of one check.
+#[derive(Clone, Debug)]
+pub(super) struct Budget {
+    deadline: Deadline,
+    memory: Option<Memory>,
+}
+
+impl Budget {
+    pub(super) fn new(deadline: &Deadline, memory: Option<&Memory>) -> Budget {
+        Budget { deadline: deadline.clone(), memory: memory.cloned() }
+    }
+
+    /// Whether it is time to stop.
+    pub(super) fn spent(&self) -> bool {
+        self.deadline.passed() || self.memory.as_ref().is_some_and(Memory::spent)
+    }
+
+    /// Why it was time to stop.
+    pub(super) fn reason(&self) -> String {
+        match &self.memory {
+            Some(memory) if !self.deadline.passed() => format!("memory limit of {} MiB reached", memory.mib),
+            _ => self.deadline.reason().to_owned(),
+        }
+    }
+}
+
+/// Why there is no answer to a check.
+#[derive(Debug)]
+pub(super) enum Halt {
+    /// The budget is spent; the next check may go on.
+    Spent,
+    /// A failure.
+    Error(Error),
+}
+
+impl From<Error> for Halt {
+    fn from(error: Error) -> Halt {
+        Halt::Error(error)
+    }
+}

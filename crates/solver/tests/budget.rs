@@ -1,0 +1,137 @@
+//! The embedded engine under limits of time and memory: it stops, says why, and can go on.
+
+#![cfg(any(feature = "cadical", feature = "batsat"))]
+
+use std::time::{Duration, Instant};
+
+use hyperplan_smt::{Script, Sort, Term, Terms};
+use hyperplan_solver::{Answer, Deadline, Options, Spec, open};
+
+/// The last of so many products, each of the one before and itself plus the next constant: some fifty thousand
+/// clauses each.
+fn products(terms: &mut Terms, count: u32) -> (Term, Term) {
+    let stem = terms.stem("x");
+    let x = terms.symbol(stem, None, Sort::BitVec(64));
+    let last = (0..count).fold(x, |t, i| {
+        let constant = terms.bv(i128::from(i), 64);
+        let sum = terms.bv_add(t, constant);
+        terms.bv_mul(t, sum)
+    });
+    (x, last)
+}
+
+/// One assertion that would take minutes, and all memory there is, to be written as clauses.
+fn endless() -> Script {
+    let mut script = Script::new();
+    let (x, last) = products(&mut script.terms, 200_000);
+    let claim = script.terms.eq(x, last);
+    script.assert(claim);
+    script
+}
+
+/// More pigeons than holes.
+fn pigeons(holes: usize) -> Script {
+    let mut script = Script::new();
+    let stem = script.terms.stem("in");
+    let places = 0..((holes + 1) * holes) as u32;
+    let at: Vec<Term> = places.map(|i| script.terms.symbol(stem, Some(i), Sort::Bool)).collect();
+    for pigeon in at.chunks(holes) {
+        script.clause(pigeon);
+    }
+    for hole in 0..holes {
+        for a in 0..=holes {
+            for b in 0..a {
+                script.clause(&[!at[a * holes + hole], !at[b * holes + hole]]);
+            }
+        }
+    }
+    script
+}
+
+#[test]
+fn encoding_one_assertion_stops_at_the_deadline() {
+    let script = endless();
+    let mut session = open(&Spec::Builtin, &Options::default()).expect("it is built in");
+    for _ in 0..3 {
+        let start = Instant::now();
+        let answer = session.check(&script, &[], &Deadline::after(Duration::from_millis(100)));
+        assert_eq!(answer.expect("no error"), Answer::Unknown("timeout".to_owned()));
+        assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
+    }
+}
+
+#[test]
+fn a_cancelled_check_says_so() {
+    let deadline = Deadline::never();
+    let flag = deadline.cancel_flag();
+    for script in [endless(), pigeons(12)] {
+        flag.store(false, std::sync::atomic::Ordering::Relaxed);
+        let mut session = open(&Spec::Builtin, &Options::default()).expect("it is built in");
+        let answer = std::thread::scope(|scope| {
+            scope.spawn(|| {
+                std::thread::sleep(Duration::from_millis(100));
+                flag.store(true, std::sync::atomic::Ordering::Relaxed);
+            });
+            session.check(&script, &[], &deadline).expect("no error")
+        });
+        assert_eq!(answer, Answer::Unknown("interrupted".to_owned()));
+    }
+}
+
+#[test]
+fn an_interrupted_session_goes_on() {
+    for (bit, expected) in [(0, Answer::Sat), (1, Answer::Unsat)] {
+        let mut script = Script::new();
+        // Products of what is even are even.
+        let (x, last) = products(&mut script.terms, 6);
+        for (t, bit) in [(x, 0), (last, bit)] {
+            let low = script.terms.extract(t, 0, 0);
+            let value = script.terms.bv(bit, 1);
+            let claim = script.terms.eq(low, value);
+            script.assert(claim);
+        }
+        let mut session = open(&Spec::Builtin, &Options::default()).expect("it is built in");
+        let mut interruptions = 0;
+        let answer = loop {
+            let deadline = Deadline::after(Duration::from_millis(1 << interruptions));
+            match session.check(&script, &[], &deadline).expect("no error") {
+                Answer::Unknown(reason) => assert_eq!(reason, "timeout"),
+                answer => break answer,
+            }
+            interruptions += 1;
+        };
+        assert_eq!(answer, expected);
+        assert!(interruptions > 0, "it was never interrupted");
+        if answer == Answer::Sat {
+            let values = session.values(&script, &[x]).expect("a model");
+            assert!(values[0].as_unsigned().is_some_and(|x| x % 2 == 0), "{values:?}");
+        }
+    }
+}
+
+#[test]
+fn encoding_stops_at_the_memory_limit() {
+    let script = endless();
+    let options = Options { memory_mib: Some(64), ..Options::default() };
+    let mut session = open(&Spec::Builtin, &options).expect("it is built in");
+    let answer = session.check(&script, &[], &Deadline::after(Duration::from_secs(300))).expect("no error");
+    assert_eq!(answer, Answer::Unknown("memory limit of 64 MiB reached".to_owned()));
+}
+
+#[test]
+fn search_stops_at_the_memory_limit() {
+    let script = pigeons(12);
+    let options = Options { memory_mib: Some(1), ..Options::default() };
+    let mut session = open(&Spec::Builtin, &options).expect("it is built in");
+    let answer = session.check(&script, &[], &Deadline::after(Duration::from_secs(300))).expect("no error");
+    assert_eq!(answer, Answer::Unknown("memory limit of 1 MiB reached".to_owned()));
+}
+
+#[test]
+fn a_limit_that_is_not_reached_changes_nothing() {
+    let script = pigeons(5);
+    let options = Options { memory_mib: Some(1 << 40), ..Options::default() };
+    let mut session = open(&Spec::Builtin, &options).expect("it is built in");
+    let answer = session.check(&script, &[], &Deadline::never()).expect("no error");
+    assert_eq!(answer, Answer::Unsat);
+}

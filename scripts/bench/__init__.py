@@ -1,0 +1,1 @@
+"""The parts of scripts/performance.py: problems to measure, runs, what they say, and how it is shown."""
