@@ -11,7 +11,7 @@ const HOME: usize = 0;
 /// A problem of that shape; one in four is about the other player.
 pub(crate) fn conformant(random: &mut Random) -> Problem {
     let system = system(random);
-    let horizon = if system.actions.len() > 2 { 2 + random.bound(2) } else { 2 + random.bound(4) };
+    let horizon = if system.actions.len() > 2 { 1 + random.bound(2) } else { 1 + random.bound(3) };
     let within = random.once_in(2).then_some(horizon);
     let always = |f| Formula::Globally(Some((0, horizon)), Box::new(f));
     let not = |f| Formula::Not(Box::new(f));

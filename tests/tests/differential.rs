@@ -183,10 +183,17 @@ impl Way {
         ways
     }
 
-    fn answer(self, problem: &Problem, objective: &Objective, solver: &Spec) -> Result<Outcome, Error> {
+    fn answer(
+        self,
+        problem: &Problem,
+        objective: &Objective,
+        solver: &Spec,
+        cross_check: Option<Spec>,
+    ) -> Result<Outcome, Error> {
         let Way { quantifiers, states, limits } = self;
         let deadline = Deadline::after(Duration::from_secs(60));
-        let config = Config { quantifiers, states, limits, deadline, ..Config::new(solver.clone()) };
+        let config =
+            Config { cross_check, quantifiers, states, limits, deadline, ..Config::new(solver.clone()) };
         solve(problem, objective, &config)
     }
 }
@@ -194,6 +201,8 @@ impl Way {
 /// How many answers there were, how many requests were not supported or not decided, and what was wrong.
 #[derive(Default)]
 struct Answers {
+    /// Who is asked whether what is said to be unsatisfiable is so.
+    second: Option<Spec>,
     given: u64,
     unsupported: u64,
     unknown: u64,
@@ -215,7 +224,7 @@ impl Answers {
             {
                 continue;
             }
-            match way.answer(&typed, &typed.objectives[0], solver) {
+            match way.answer(&typed, &typed.objectives[0], solver, self.second.clone()) {
                 Ok(Outcome { verdict: Verdict::Unknown, .. }) => self.unknown += 1,
                 Err(error) if error.exit_code() == 2 => self.unsupported += 1,
                 answer => {
@@ -229,7 +238,7 @@ impl Answers {
     }
 
     fn report(&self, solver: &str) {
-        let Answers { given, unsupported, unknown, wrong } = self;
+        let Answers { second: _, given, unsupported, unknown, wrong } = self;
         say(&format!("{solver}: {given} answers, {unsupported} not supported, {unknown} unknown"));
         let some: Vec<&str> = wrong.iter().take(3).map(String::as_str).collect();
         assert!(
@@ -302,5 +311,21 @@ fn external_solvers_answer_as_brute_force_does() {
             answers.compare(&problem(&mut Random::new(seed)), &spec, &ways, seed);
         }
         answers.report(&solver.name);
+    }
+}
+
+/// The same queries go to two solvers: one answers, and the next confirms that what it finds unsatisfiable is so.
+#[test]
+fn external_solvers_confirm_each_other() {
+    let ways = [Quantifiers::Keep, Quantifiers::Cegis, Quantifiers::Expand];
+    let found = discover().into_iter().filter(|solver| solver.name != "builtin" && solver.path.is_some());
+    let found: Vec<Spec> =
+        found.map(|solver| Spec::from_str(&solver.name).expect("a solver that was discovered")).collect();
+    for (solver, second) in found.iter().zip(found.iter().cycle().skip(1)) {
+        let mut answers = Answers { second: Some(second.clone()), ..Answers::default() };
+        for seed in seeds(15) {
+            answers.compare(&problem(&mut Random::new(seed)), solver, &ways, seed);
+        }
+        answers.report(&format!("{}, confirmed by {}", solver.name(), second.name()));
     }
 }

@@ -144,10 +144,14 @@ pub(crate) struct Solve {
     pub(crate) output: Output,
     #[command(flatten)]
     pub(crate) encoding: Encoding,
-    /// `builtin`, `z3`, `cvc5`, `yices`, or a command line
+    /// `builtin`, `z3`, `cvc5`, `yices`, `bitwuzla`, a name in hyperplan.toml, or a command line; several, separated
+    /// by commas, race each other
     #[arg(long, value_name = "SOLVER", default_value = "builtin")]
     pub(crate) solver: String,
-    /// Most memory of a solver; the builtin one stops when hyperplan itself has grown by so much
+    /// Asks this solver too whether what the other finds impossible is so
+    #[arg(long, value_name = "SOLVER")]
+    pub(crate) cross_check: Option<String>,
+    /// Most memory of each solver process; the builtin one stops when hyperplan itself has grown by so much
     #[arg(long, value_name = "MIB")]
     pub(crate) memory: Option<u64>,
     /// Finds the least value of a constant, such as T, for which the objective is realizable, and proves that
@@ -160,7 +164,7 @@ pub(crate) struct Solve {
     /// Saves the answer as JSON
     #[arg(long, value_name = "FILE.json")]
     pub(crate) save: Option<PathBuf>,
-    /// Keeps every query sent to the solver
+    /// Keeps every query sent to the solver, with its replies as comments
     #[arg(long, value_name = "DIR")]
     pub(crate) queries: Option<PathBuf>,
     /// Prints the strategy unchecked

@@ -1,6 +1,7 @@
 //! What was typed becomes what is meant: the one place where arguments are checked.
 
 use crate::args::{self, ColorWhen};
+use crate::configuration;
 use crate::failure::{Failure, Outcome};
 use crate::output::check_writable;
 use crate::report::Picture;
@@ -31,7 +32,10 @@ impl Solve {
         if args.memory == Some(0) {
             return Err(Failure::input("--memory 0 leaves no memory to the solver"));
         }
+        let (solver, rivals) = solvers(&args.solver)?;
         let plan = Config {
+            rivals,
+            cross_check: args.cross_check.as_deref().map(self::solver).transpose()?,
             quantifiers: quantifiers(args.encoding.quantifiers),
             states: states(args.encoding.states)?,
             deadline: deadline(args.encoding.timeout)?,
@@ -39,7 +43,7 @@ impl Solve {
             seed: args.seed,
             memory_mib: args.memory,
             queries: args.queries.clone(),
-            ..Config::new(solver(&args.solver)?)
+            ..Config::new(solver)
         };
         Ok(Solve { plan, plot, save: args.save.clone() })
     }
@@ -47,7 +51,21 @@ impl Solve {
 
 /// A solver by name or command line.
 pub(crate) fn solver(text: &str) -> Outcome<Spec> {
-    text.parse::<Spec>().map_err(|e| Failure::input(format_args!("{e}")))
+    match solvers(text)? {
+        (solver, rivals) if rivals.is_empty() => Ok(solver),
+        _ => Err(Failure::input(format_args!("one solver is wanted here, not a list ({text})"))),
+    }
+}
+
+/// One solver, and those that race it.
+fn solvers(text: &str) -> Outcome<(Spec, Vec<Spec>)> {
+    if text.trim() == "builtin" {
+        return Ok((Spec::Builtin, Vec::new()));
+    }
+    let specs = configuration::catalog()?.specs(text).map_err(|e| Failure::input(format_args!("{e}")))?;
+    let mut specs = specs.into_iter();
+    let first = specs.next().ok_or_else(|| Failure::input("the solver's name is empty"))?;
+    Ok((first, specs.collect()))
 }
 
 pub(crate) fn quantifiers(typed: args::Quantifiers) -> Quantifiers {

@@ -3,6 +3,7 @@
 mod args;
 mod commands;
 mod config;
+mod configuration;
 mod failure;
 mod family;
 mod load;

@@ -188,7 +188,8 @@ fn time_runs_out() {
 
 #[test]
 fn memory_runs_out() {
-    let run = hyperplan(&["solve", "case-studies/ar-60.hp", "--memory", "1", "--format", "json"]);
+    let arguments = ["case-studies/iso-60.hp", "--quantifiers", "expand", "--memory", "1"];
+    let run = hyperplan(&[&["solve", "--format", "json"][..], &arguments[..]].concat());
     assert_eq!(run.status, 3, "{}", run.stderr);
     assert_eq!(run.json()[0]["reason"], "memory limit of 1 MiB reached");
 }

@@ -81,6 +81,10 @@ impl fmt::Display for States {
 pub struct Config {
     /// The solver.
     pub solver: Spec,
+    /// Solvers that search at the same time; the first verified answer counts.
+    pub rivals: Vec<Spec>,
+    /// The solver that is asked whether what is said to be unsatisfiable is so.
+    pub cross_check: Option<Spec>,
     /// How quantifiers are decided.
     pub quantifiers: Quantifiers,
     /// How states are written.
@@ -105,6 +109,8 @@ impl Config {
     pub fn new(solver: Spec) -> Self {
         Config {
             solver,
+            rivals: Vec::new(),
+            cross_check: None,
             quantifiers: Quantifiers::Auto,
             states: States::Auto,
             deadline: Deadline::never(),
@@ -210,6 +216,19 @@ pub enum Error {
         /// What is wrong with it.
         what: String,
     },
+    /// Two solvers contradict each other.
+    #[error("solvers {unsat} and {sat} disagree: {unsat} says unsat, {sat} says sat, {what}")]
+    Disagreement {
+        /// Who says unsat.
+        unsat: String,
+        /// Who says sat.
+        sat: String,
+        /// What the model of the latter is worth, and where the query is kept.
+        what: String,
+    },
+    /// All solvers of a race failed.
+    #[error("no solver gave an answer: {}", listed(.0))]
+    Race(Vec<(String, Error)>),
     /// Our own checker refutes our answer.
     #[error("this is a bug in hyperplan: the strategy found fails verification: {0}; please report it")]
     Bug(String),
@@ -224,8 +243,14 @@ impl Error {
             Error::Encode(encode::Error::Interrupted) => 3,
             Error::Unsupported(_) | Error::Encode(_) => 2,
             Error::Solver(error) if error.is_unsupported() => 2,
-            Error::Solver(_) | Error::WrongModel { .. } => 4,
+            Error::Solver(_) | Error::WrongModel { .. } | Error::Disagreement { .. } => 4,
+            Error::Race(errors) => errors.iter().map(|(_, error)| error.exit_code()).max().unwrap_or(4),
             Error::Bug(_) => 5,
         }
     }
+}
+
+fn listed(errors: &[(String, Error)]) -> String {
+    let each = errors.iter().map(|(name, error)| format!("{name}: {error}"));
+    each.collect::<Vec<_>>().join("; ")
 }

@@ -7,13 +7,16 @@
 
 mod cegis;
 mod config;
+mod cross_check;
 mod direct;
 mod emit;
+mod evidence;
 mod lasting;
 mod lint;
 mod minimize;
 mod oracle;
 mod prepare;
+mod race;
 mod solve;
 
 pub use config::{Config, EmitConfig, Error, Outcome, Quantifiers, Seconds, States, Verdict, Verified};

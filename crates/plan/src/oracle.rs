@@ -1,7 +1,8 @@
 //! The solver as the search uses it: checks with a clock, and models that are evaluated before they are believed.
 
 use crate::config::{Config, Error};
-use hyperplan_smt::{Model, Script, Term, first_violated};
+use crate::evidence::{Claim, Evidence};
+use hyperplan_smt::{Model, Script, Term, check_model};
 use hyperplan_solver::{self as solver, Answer, Identity, Options, Session, Size, Spec, open};
 use std::time::Instant;
 
@@ -22,8 +23,12 @@ impl<E: Into<Error>> From<E> for Stop {
 
 /// Opens sessions and keeps the accounts.
 pub(crate) struct Oracle<'c> {
-    config: &'c Config,
+    pub(crate) config: &'c Config,
     identity: Option<Identity>,
+    /// The last query whose model could not be evaluated, since quantifiers cannot.
+    unproved: Option<Evidence>,
+    /// What the user should know of the solvers.
+    pub(crate) notes: Vec<String>,
     /// Time spent waiting for solvers.
     pub(crate) solving: f64,
     /// The largest query.
@@ -32,7 +37,14 @@ pub(crate) struct Oracle<'c> {
 
 impl<'c> Oracle<'c> {
     pub(crate) fn new(config: &'c Config) -> Self {
-        Oracle { config, identity: None, solving: 0.0, largest: Size::default() }
+        Oracle {
+            config,
+            identity: None,
+            unproved: None,
+            notes: Vec::new(),
+            solving: 0.0,
+            largest: Size::default(),
+        }
     }
 
     /// Starts a dialogue about queries with so many blocks of quantifiers, the leading one as free symbols.
@@ -49,8 +61,7 @@ impl<'c> Oracle<'c> {
         let start = Instant::now();
         let session = open(&self.config.solver, &options)?;
         self.solving += start.elapsed().as_secs_f64();
-        self.identity.get_or_insert_with(|| session.identity());
-        Ok(Dialogue { session, trusted: self.config.solver == Spec::Builtin })
+        Ok(Dialogue { session, trusted: self.config.solver == Spec::Builtin, options, second: None })
     }
 
     /// Whether the script is satisfiable.
@@ -62,9 +73,13 @@ impl<'c> Oracle<'c> {
         let answer = dialogue.session.check(script, &[], &self.config.deadline);
         self.solving += start.elapsed().as_secs_f64();
         self.largest = self.largest.max(dialogue.session.size());
-        match answer? {
+        let answer = answer?;
+        if answer != Answer::Sat {
+            self.introduce(dialogue);
+        }
+        match answer {
             Answer::Sat => Ok(true),
-            Answer::Unsat => Ok(false),
+            Answer::Unsat => self.cross_check(dialogue, script).map(|()| false),
             // The solver may give its own name to what our clock did.
             Answer::Unknown(_) if self.config.deadline.passed() => Err(Stop::Unknown(self.late())),
             Answer::Unknown(reason) => Err(Stop::Unknown(reason)),
@@ -87,17 +102,50 @@ impl<'c> Oracle<'c> {
         let start = Instant::now();
         let values = dialogue.session.values(script, &symbols);
         self.solving += start.elapsed().as_secs_f64();
-        if let Err(solver::Error::Deadline { .. }) = values {
-            return Err(Stop::Unknown(self.late()));
+        match &values {
+            Err(solver::Error::Deadline { .. }) => return Err(Stop::Unknown(self.late())),
+            Err(solver::Error::Memory { .. }) => return Err(Stop::Unknown("out of memory".to_owned())),
+            _ => {}
         }
-        let mut model = Model::new();
-        for (symbol, value) in symbols.into_iter().zip(values?) {
-            model.insert(symbol, value);
-        }
-        if !dialogue.trusted && first_violated(script, &model).is_some() {
-            return Err(self.wrong(dialogue, "it does not satisfy the query").into());
+        let model: Model = symbols.into_iter().zip(values?).collect();
+        self.introduce(dialogue);
+        if !dialogue.trusted {
+            self.evaluate(dialogue, script, &model)?;
         }
         Ok(model)
+    }
+
+    /// Refuses a model that does not satisfy the script. What cannot be evaluated is remembered, should the paths fail.
+    fn evaluate(&mut self, dialogue: &Dialogue, script: &Script, model: &Model) -> Result<(), Error> {
+        let result = check_model(script, model);
+        if result.violated.is_none() && result.unknown == 0 {
+            return Ok(());
+        }
+        let claim = Claim::Sat { by: &dialogue.session.identity(), model, violated: result.violated };
+        let evidence = Evidence::new(script, &claim);
+        if result.violated.is_some() {
+            let what = format!("it does not satisfy the query, {}", evidence.keep(self.config));
+            return Err(self.wrong(dialogue, &what));
+        }
+        self.unproved = Some(evidence);
+        Ok(())
+    }
+
+    /// A model whose paths fail comes with its query, where that could not be evaluated.
+    pub(crate) fn with_evidence(&self, error: Error) -> Error {
+        match (error, &self.unproved) {
+            (Error::WrongModel { solver, what }, Some(evidence)) => {
+                let kept = evidence.keep(self.config);
+                let what = format!("{what}; its model could not be evaluated on the query, {kept}");
+                Error::WrongModel { solver, what }
+            }
+            (error, _) => error,
+        }
+    }
+
+    /// Takes note of who answers, once the solver has had the occasion to say its version.
+    fn introduce(&mut self, dialogue: &Dialogue) {
+        self.identity.get_or_insert_with(|| dialogue.session.identity());
     }
 
     /// A model that describes no path, or whose paths fail.
@@ -108,11 +156,7 @@ impl<'c> Oracle<'c> {
     /// Who answered; the name asked for, where nobody was asked.
     pub(crate) fn identity(&self) -> Identity {
         self.identity.clone().unwrap_or_else(|| Identity {
-            name: match &self.config.solver {
-                Spec::Builtin => "builtin".into(),
-                Spec::Profile(name) => name.clone(),
-                Spec::Command(line) => line.clone(),
-            },
+            name: self.config.solver.name().to_owned(),
             version: String::new(),
         })
     }
@@ -120,9 +164,12 @@ impl<'c> Oracle<'c> {
 
 /// One dialogue with a solver about one script.
 pub(crate) struct Dialogue {
-    session: Box<dyn Session>,
+    pub(crate) session: Box<dyn Session>,
     /// The embedded engine's models are evaluated only when verification fails.
     trusted: bool,
+    pub(crate) options: Options,
+    /// The solver that checks what this one says is unsatisfiable.
+    pub(crate) second: Option<Box<dyn Session>>,
 }
 
 fn with_all_symbols(script: &Script, wanted: Vec<Term>) -> Vec<Term> {

@@ -5,6 +5,7 @@ use crate::config::{Config, Error, Outcome, Quantifiers, Seconds, States, Verdic
 use crate::direct;
 use crate::oracle::{Oracle, Stop};
 use crate::prepare::{blocks, decided, no_dead_ends, without_paths};
+use crate::race::race;
 use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Narrowing};
 use hyperplan_problem::{Objective, PathId, Problem, Quantifier, Strategy};
 use hyperplan_solver::{Size, Spec};
@@ -35,6 +36,9 @@ pub(crate) fn solve_sharing(
     config: &Config,
     graphs: &Graphs,
 ) -> Result<Outcome, Error> {
+    if !config.rivals.is_empty() {
+        return race(problem, objective, config);
+    }
     match attempt(problem, objective, config, graphs) {
         Err(Error::Encode(error @ encode::Error::TooLarge { .. })) if config.states == States::Auto => {
             let symbolic = Config { states: States::Bitvec, ..config.clone() };
@@ -82,6 +86,7 @@ fn attempt(
     outcome.seconds =
         Seconds { encode: (total - oracle.solving).max(0.0), solve: oracle.solving, verify: 0.0 };
     outcome.solver = oracle.identity();
+    outcome.notes.append(&mut oracle.notes);
     outcome.size = oracle.largest;
     match answer {
         Err(Stop::Error(Error::Encode(encode::Error::Interrupted))) => {
@@ -97,7 +102,7 @@ fn attempt(
     }
     if config.verify {
         let start = Instant::now();
-        confirm(&encoder, config, &mut outcome)?;
+        confirm(&encoder, config, &mut outcome).map_err(|error| oracle.with_evidence(error))?;
         outcome.seconds.verify = start.elapsed().as_secs_f64();
     }
     Ok(outcome)

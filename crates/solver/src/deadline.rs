@@ -9,19 +9,21 @@ use std::time::{Duration, Instant};
 pub struct Deadline {
     at: Option<Instant>,
     cancel: Arc<AtomicBool>,
+    /// The flags of those that this is a part of.
+    wider: Vec<Arc<AtomicBool>>,
 }
 
 impl Deadline {
     /// No point in time; still cancellable.
     #[must_use]
     pub fn never() -> Deadline {
-        Deadline { at: None, cancel: Arc::default() }
+        Deadline { at: None, cancel: Arc::default(), wider: Vec::new() }
     }
 
     /// So long from now. A duration that the clock cannot hold means never.
     #[must_use]
     pub fn after(duration: Duration) -> Deadline {
-        Deadline { at: Instant::now().checked_add(duration), cancel: Arc::default() }
+        Deadline { at: Instant::now().checked_add(duration), ..Deadline::never() }
     }
 
     /// This deadline or that long from now, whichever is first; the flag is shared.
@@ -32,7 +34,20 @@ impl Deadline {
             (Some(a), Some(b)) => Some(a.min(b)),
             (a, b) => a.or(b),
         };
-        Deadline { at, cancel: Arc::clone(&self.cancel) }
+        Deadline { at, ..self.clone() }
+    }
+
+    /// The same point in time, and a flag of its own besides this one's: what is cancelled by it is only a part.
+    #[must_use]
+    pub fn part(&self) -> Deadline {
+        let mut wider = self.wider.clone();
+        wider.push(Arc::clone(&self.cancel));
+        Deadline { at: self.at, cancel: Arc::default(), wider }
+    }
+
+    /// Cancels.
+    pub fn cancel(&self) {
+        self.cancel.store(true, Ordering::Relaxed);
     }
 
     /// Whether it has passed or was cancelled.
@@ -44,7 +59,7 @@ impl Deadline {
     /// Whether it was cancelled.
     #[must_use]
     pub fn cancelled(&self) -> bool {
-        self.cancel.load(Ordering::Relaxed)
+        std::iter::once(&self.cancel).chain(&self.wider).any(|flag| flag.load(Ordering::Relaxed))
     }
 
     /// The flag that cancels when it is set: for signal handlers and other threads.

@@ -55,6 +55,12 @@ pub enum Error {
         /// The solver.
         name: String,
     },
+    /// The solver had not enough memory.
+    #[error("solver {name} ran out of memory")]
+    Memory {
+        /// The solver.
+        name: String,
+    },
     /// Values were asked for where the last answer was not sat.
     #[error("solver {name} has no model: its last answer was not sat")]
     NoModel {

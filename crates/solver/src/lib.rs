@@ -2,7 +2,8 @@
 //!
 //! [`open`] starts a [`Session`] for a [`Spec`]; a session takes a growing
 //! [`Script`](hyperplan_smt::Script), answers under assumptions before a [`Deadline`], and gives the
-//! values of symbols. [`discover`] lists the solvers of this machine.
+//! values of symbols. [`discover`] lists the solvers of this machine. A [`Catalog`] knows solvers by name, those of
+//! configuration files too.
 //!
 //! No answer is trusted here: whoever asks should evaluate the script under the values.
 
@@ -18,5 +19,5 @@ pub use deadline::Deadline;
 pub use error::Error;
 #[doc(hidden)]
 pub use external::understand_output;
-pub use external::{Found, discover};
+pub use external::{Catalog, ConfigError, Found, Install, Profile, discover};
 pub use session::{Answer, Identity, Options, Session, Size, Spec, open};

@@ -2,12 +2,14 @@
 
 use std::path::PathBuf;
 use std::str::FromStr;
+use std::sync::Arc;
 
 use hyperplan_smt::{Script, Status, Term, Value};
+use serde::Deserialize;
 
 use crate::deadline::Deadline;
 use crate::error::Error;
-use crate::external;
+use crate::external::{self, Profile};
 
 /// The answer to a check.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -68,6 +70,8 @@ pub enum Spec {
     Builtin,
     /// A solver that hyperplan knows: `z3`, `cvc5`, `yices`, `bitwuzla`.
     Profile(String),
+    /// A solver that a configuration file describes.
+    Configured(Arc<Profile>),
     /// A command line that reads SMT-LIB 2 from standard input. Words are split at blanks; quotes
     /// keep blanks together.
     Command(String),
@@ -78,6 +82,17 @@ impl Spec {
     #[must_use]
     pub fn for_arithmetic() -> Option<Spec> {
         external::for_arithmetic().map(|name| Spec::Profile(name.to_owned()))
+    }
+
+    /// What the solver is called before it was asked.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        match self {
+            Spec::Builtin => "builtin",
+            Spec::Profile(name) => name,
+            Spec::Configured(profile) => profile.name(),
+            Spec::Command(line) => line,
+        }
     }
 }
 
@@ -93,10 +108,10 @@ impl FromStr for Spec {
             return Ok(Spec::Builtin);
         }
         if let Some(profile) = external::profile(text) {
-            return Ok(Spec::Profile(profile.name.to_owned()));
+            return Ok(Spec::Profile(profile.name.clone()));
         }
-        if text.contains(',') {
-            let what = format!("several solvers at once ({text}) are not supported yet; name one");
+        if external::split_list(text).len() > 1 {
+            let what = format!("one solver is wanted here, not a list ({text})");
             return Err(Error::Unsupported { what });
         }
         Ok(Spec::Command(text.to_owned()))
@@ -104,7 +119,8 @@ impl FromStr for Spec {
 }
 
 /// The quantifiers of a script, or those that a solver takes. Each kind includes those before it.
-#[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
+#[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub(crate) enum Quantifiers {
     /// No quantifiers.
     None,
@@ -168,7 +184,11 @@ impl Options {
 pub fn open(spec: &Spec, options: &Options) -> Result<Box<dyn Session>, Error> {
     match spec {
         Spec::Builtin => builtin(options),
-        Spec::Profile(name) => external::open_profile(name, options),
+        Spec::Profile(name) => match external::profile(name) {
+            Some(profile) => external::open_profile(profile, options),
+            None => Err(Error::Unsupported { what: format!("no solver {name} is known") }),
+        },
+        Spec::Configured(profile) => external::open_profile(profile, options),
         Spec::Command(line) => external::open_command(line, options),
     }
 }

@@ -1,4 +1,4 @@
-//! Keeps what solvers are asked, as files that can be replayed.
+//! Keeps what solvers are asked, as files that can be replayed, and what they replied, as comments in these.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
@@ -36,6 +36,14 @@ impl Transcript {
     /// Keeps a piece. A full disk must not stop the search: failures are ignored.
     pub(crate) fn keep(&mut self, text: &[u8]) {
         let _ = self.file.write_all(text);
+    }
+
+    /// Keeps what the solver said, after what it was told last.
+    pub(crate) fn comment(&mut self, text: &str) {
+        for line in text.lines() {
+            // A lone carriage return would end the comment for some readers.
+            self.keep(format!("; {}\n", line.replace('\r', " ").trim_end()).as_bytes());
+        }
     }
 }
 

@@ -4,7 +4,8 @@ mod common;
 
 use common::{Growing, Random, installed};
 use hyperplan_smt::Term;
-use hyperplan_solver::{Answer, Deadline, Options, Spec, open};
+use hyperplan_solver::{Answer, Catalog, Deadline, Options, Spec, open};
+use std::path::Path;
 
 fn agrees(spec: &Spec, seeds: std::ops::Range<u64>) {
     let options = Options { incremental: true, ..Options::default() };
@@ -45,5 +46,25 @@ fn builtin_agrees_with_brute_force() {
 fn external_solvers_agree_with_brute_force() {
     for name in installed(&["z3", "cvc5", "yices"]) {
         agrees(&Spec::Profile(name), 0..40);
+    }
+}
+
+/// Assumptions between push and pop, a process for each check, and queries in files.
+#[test]
+fn other_ways_to_ask_agree_with_brute_force() {
+    let mut catalog = Catalog::default();
+    for name in installed(&["z3", "cvc5", "yices"]) {
+        let entries = format!(
+            "[[solver]]\nname = \"push-{name}\"\nlike = \"{name}\"\nassumptions = \"push\"\n\
+             [[solver]]\nname = \"once-{name}\"\nlike = \"{name}\"\nincremental = false\n"
+        );
+        catalog.add(Path::new("hyperplan.toml"), &entries).expect("it is good");
+        agrees(&catalog.spec(&format!("push-{name}")).expect("it was added"), 0..12);
+        agrees(&catalog.spec(&format!("once-{name}")).expect("it was added"), 0..12);
+    }
+    for (name, line) in [("z3", "z3 {file}"), ("cvc5", "cvc5 -m {file}"), ("yices", "yices-smt2 {file}")] {
+        if !installed(&[name]).is_empty() {
+            agrees(&line.parse().expect("a command line"), 0..12);
+        }
     }
 }

@@ -252,9 +252,11 @@ impl<'a> Found<'a> {
     fn effort(&self, verbose: bool) -> String {
         let Answer { solver, quantifiers, states, iterations, size, seconds, .. } = self.answer;
         let rounds = if *iterations == 1 { "round" } else { "rounds" };
+        let name = format!("{} {}", solver.name, solver.version);
         let mut text = format!(
-            "{} {}, quantifiers {quantifiers}, states {states}, {iterations} {rounds}, {:.3} s\n",
-            solver.name, solver.version, seconds.total
+            "{}, quantifiers {quantifiers}, states {states}, {iterations} {rounds}, {:.3} s\n",
+            name.trim_end(),
+            seconds.total
         );
         if verbose {
             let Seconds { read, encode, solve, verify, .. } = seconds;

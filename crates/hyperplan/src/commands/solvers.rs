@@ -1,39 +1,57 @@
-//! `hyperplan solvers`: which solvers there are, and how to get the others.
+//! `hyperplan solvers`: which solvers there are, what each can do, and how to get the others.
 
 use crate::args::{self, Format};
+use crate::configuration;
 use crate::failure::{Outcome, Status};
 use crate::output::Output;
 use crate::report::json;
-use hyperplan_solver::{Found, discover};
+use hyperplan_solver::Found;
 use serde::Serialize;
 
 pub(crate) fn run(args: &args::Solvers, out: &mut Output) -> Outcome {
-    let found = discover();
+    let catalog = configuration::catalog()?;
+    let found = catalog.discover();
     match args.output.format {
         Format::Json => found.iter().try_for_each(|solver| out.line(json(&Report::new(solver))?))?,
         Format::Text => {
             let width = found.iter().map(|s| s.name.len()).max().unwrap_or(0);
             let text: String = found.iter().map(|solver| describe(solver, width)).collect();
             out.line(text.trim_end())?;
+            for file in catalog.files() {
+                out.remark(format_args!("note: {} was read", file.display()));
+            }
         }
     }
     Ok(Status::Good)
 }
 
-/// A line for a solver that was found, three for one that was not.
+/// A line for where a solver is, and lines for what it can do; for one that was not found, what was tried, and how to
+/// install it.
 fn describe(solver: &Found, width: usize) -> String {
-    let name = &solver.name;
-    let Some(path) = &solver.path else {
-        let tried = solver.tried.join(", ");
-        let indent = width + 2;
-        return format!(
-            "{name:<width$}  not found\n{:indent$}tried {tried}\n{:indent$}{}\n",
-            "", "", solver.hint
-        );
-    };
-    let version = solver.version.as_deref().unwrap_or("(version unknown)");
-    let abilities = solver.abilities.join(", ");
-    format!("{name:<width$}  {version}, {}: {abilities}\n", path.display())
+    let mut lines = Vec::new();
+    match &solver.path {
+        Some(path) => {
+            lines.push(format!(
+                "{}, {}",
+                solver.version.as_deref().unwrap_or("(version unknown)"),
+                path.display()
+            ));
+            lines.push(match solver.abilities.as_slice() {
+                [] => "it answered no question".to_owned(),
+                abilities => abilities.join(", "),
+            });
+            lines.extend(solver.faults.iter().map(|fault| format!("WRONG on {fault}")));
+        }
+        None => {
+            lines.push("not found".to_owned());
+            lines.push(format!("tried {}", solver.tried.join(", ")));
+            lines.push(solver.hint.clone());
+        }
+    }
+    let mut text = format!("{:<width$}  ", solver.name);
+    text.push_str(&lines.join(&format!("\n{:indent$}", "", indent = width + 2)));
+    text.push('\n');
+    text
 }
 
 #[derive(Serialize)]
@@ -42,20 +60,43 @@ struct Report<'a> {
     path: Option<String>,
     version: Option<&'a str>,
     abilities: &'a [String],
+    /// Small questions that it answered wrong.
+    faults: &'a [String],
     tried: &'a [String],
-    /// How to install it.
+    /// How to install it, in words.
     hint: &'a str,
+    install: Install<'a>,
+    /// The configuration file that describes it.
+    origin: Option<String>,
+}
+
+/// Commands for each kind of system, and an address that says more.
+#[derive(Serialize)]
+struct Install<'a> {
+    debian: Option<&'a str>,
+    macos: Option<&'a str>,
+    pypi: Option<&'a str>,
+    see: Option<&'a str>,
 }
 
 impl<'a> Report<'a> {
     fn new(solver: &'a Found) -> Self {
+        let install = &solver.install;
         Report {
             name: &solver.name,
             path: solver.path.as_ref().map(|p| p.display().to_string()),
             version: solver.version.as_deref(),
             abilities: &solver.abilities,
+            faults: &solver.faults,
             tried: &solver.tried,
             hint: &solver.hint,
+            install: Install {
+                debian: install.debian.as_deref(),
+                macos: install.macos.as_deref(),
+                pypi: install.pypi.as_deref(),
+                see: install.see.as_deref(),
+            },
+            origin: solver.origin.as_ref().map(|p| p.display().to_string()),
         }
     }
 }

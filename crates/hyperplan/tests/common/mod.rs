@@ -2,6 +2,9 @@
 
 #![allow(dead_code, reason = "each test file is a crate of its own")]
 
+#[cfg(unix)]
+pub(crate) mod fakes;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 

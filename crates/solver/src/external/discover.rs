@@ -2,11 +2,12 @@
 
 use std::env;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::sync::mpsc;
-use std::time::Duration;
+use std::thread;
 
-use super::profile::{Profile, profiles};
+use super::catalog::Catalog;
+use super::probe::{self, Ability};
+use super::profile::{Install, Profile, Theory, profiles};
+use super::version;
 
 /// A solver, found or not.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -19,33 +20,67 @@ pub struct Found {
     pub version: Option<String>,
     /// Where it was sought.
     pub tried: Vec<String>,
-    /// What it can do.
+    /// What it can do, found out by asking it.
     pub abilities: Vec<String>,
+    /// What it did when it was asked, where that was wrong.
+    pub faults: Vec<String>,
     /// How to install it.
     pub hint: String,
+    /// The same, for each kind of system.
+    pub install: Install,
+    /// The configuration file that describes it.
+    pub origin: Option<PathBuf>,
 }
 
-/// Every solver that hyperplan knows, the embedded one first, in a fixed order.
+/// Every solver that hyperplan knows without configuration, as [`Catalog::discover`].
 #[must_use]
 pub fn discover() -> Vec<Found> {
-    let external = profiles().iter().map(|profile| {
-        let (path, tried) = locate(profile);
-        Found {
-            name: profile.name.to_owned(),
-            version: path.as_deref().and_then(version),
-            path,
-            tried,
-            abilities: profile.all_abilities(),
-            hint: profile.hint.to_owned(),
-        }
-    });
-    builtin().into_iter().chain(external).collect()
+    Catalog::default().discover()
+}
+
+impl Catalog {
+    /// Every solver that can be named, the embedded one first, in a fixed order. What each can do is found out by
+    /// asking small questions, which takes a moment.
+    #[must_use]
+    pub fn discover(&self) -> Vec<Found> {
+        let external = thread::scope(|scope| {
+            // One that does not answer keeps nobody else waiting.
+            let asked: Vec<_> =
+                self.profiles().iter().map(|profile| scope.spawn(|| found(profile))).collect();
+            // A thread that panicked is one solver less.
+            asked.into_iter().filter_map(|found| found.join().ok()).collect::<Vec<_>>()
+        });
+        builtin().into_iter().chain(external).collect()
+    }
+}
+
+fn found(profile: &Profile) -> Found {
+    let (path, tried) = locate(profile);
+    let version = path.as_deref().and_then(|path| version::ask(path, &profile.version));
+    let abilities = path.as_deref().map(|path| probe::abilities(profile, path)).unwrap_or_default();
+    let able = |(name, ability): &(&str, Ability)| (*ability == Ability::Able).then(|| (*name).to_owned());
+    let faulty = |(name, ability): &(&str, Ability)| match ability {
+        Ability::Wrong(what) => Some(format!("{name}: {what}")),
+        Ability::Able | Ability::Unable => None,
+    };
+    Found {
+        name: profile.name.clone(),
+        version,
+        path,
+        tried,
+        abilities: abilities.iter().filter_map(able).collect(),
+        faults: abilities.iter().filter_map(faulty).collect(),
+        hint: profile.install.to_string(),
+        install: profile.install.clone(),
+        origin: profile.origin.clone(),
+    }
 }
 
 /// The name of the first solver found that knows integers and reals.
 pub(crate) fn for_arithmetic() -> Option<&'static str> {
-    let able = |profile: &&Profile| ["integers", "reals"].iter().all(|a| profile.abilities.contains(a));
-    profiles().iter().filter(able).find(|profile| locate(profile).0.is_some()).map(|profile| profile.name)
+    let able = |profile: &Profile| profile.takes(Theory::Integers) && profile.takes(Theory::Reals);
+    let mut able = profiles().iter().filter(|profile| able(profile));
+    able.find(|profile| locate(profile).0.is_some()).map(|profile| profile.name.as_str())
 }
 
 #[cfg(any(feature = "cadical", feature = "batsat"))]
@@ -58,7 +93,10 @@ fn builtin() -> Option<Found> {
         version: Some(engine.identity().version),
         tried: Vec::new(),
         abilities: ["bit-vectors", "incremental"].map(str::to_owned).to_vec(),
+        faults: Vec::new(),
         hint: "part of hyperplan".to_owned(),
+        install: Install::default(),
+        origin: None,
     })
 }
 
@@ -69,13 +107,14 @@ fn builtin() -> Option<Found> {
 
 /// Where the profile's program is, and where it was sought: the environment variable, else `PATH`.
 pub(super) fn locate(profile: &Profile) -> (Option<PathBuf>, Vec<String>) {
-    if let Some(path) = env::var_os(profile.variable).filter(|path| !path.is_empty()) {
+    let variable = profile.variable();
+    if let Some(path) = env::var_os(&variable).filter(|path| !path.is_empty()) {
         let path = PathBuf::from(path);
-        let tried = vec![format!("{}={}", profile.variable, path.display())];
+        let tried = vec![format!("{variable}={}", path.display())];
         return (is_program(&path).then_some(path), tried);
     }
-    let (path, mut tried) = search(profile.program);
-    tried.insert(0, format!("${}", profile.variable));
+    let (path, mut tried) = search(&profile.program);
+    tried.insert(0, format!("${variable}"));
     (path, tried)
 }
 
@@ -92,7 +131,10 @@ pub(super) fn search(program: &str) -> (Option<PathBuf>, Vec<String>) {
         if is_program(&path) {
             return (Some(path), tried);
         }
-        tried.push(path.display().to_string());
+        let path = path.display().to_string();
+        if !tried.contains(&path) {
+            tried.push(path);
+        }
     }
     (None, tried)
 }
@@ -100,32 +142,4 @@ pub(super) fn search(program: &str) -> (Option<PathBuf>, Vec<String>) {
 fn is_program(path: &Path) -> bool {
     use std::os::unix::fs::PermissionsExt as _;
     path.metadata().is_ok_and(|data| data.is_file() && data.permissions().mode() & 0o111 != 0)
-}
-
-/// The version number in what the program says to `--version`, if it answers within seconds.
-pub(super) fn version(path: &Path) -> Option<String> {
-    let mut command = Command::new(path);
-    command.arg("--version").stdin(Stdio::null()).stderr(Stdio::null()).stdout(Stdio::piped());
-    let mut child = command.spawn().ok()?;
-    let mut stdout = child.stdout.take()?;
-    let (send, receive) = mpsc::channel();
-    std::thread::spawn(move || {
-        let mut text = vec![0; 4096];
-        let count = std::io::Read::read(&mut stdout, &mut text).unwrap_or(0);
-        text.truncate(count);
-        // The receiver may have stopped waiting.
-        let _ = send.send(String::from_utf8_lossy(&text).into_owned());
-    });
-    let text = receive.recv_timeout(Duration::from_secs(5));
-    // Whatever it is doing now, it is not needed any more.
-    let _ = child.kill();
-    let _ = child.wait();
-    text.ok()?.split_whitespace().find_map(version_in).map(str::to_owned)
-}
-
-/// A word that looks like a version: digits with a dot.
-fn version_in(word: &str) -> Option<&str> {
-    let word = word.trim_matches(|c: char| !c.is_ascii_alphanumeric());
-    let fits = word.starts_with(|c: char| c.is_ascii_digit()) && word.contains('.');
-    fits.then_some(word)
 }

@@ -4,7 +4,8 @@
 //! for a full pipe only while it drains what the solver says, so that a solver that answers early,
 //! floods us or closes its input cannot hang us. The process leads a group of its own, which is
 //! killed whole. On Linux the kernel also kills it when the keeper dies with us; the keeper lives as
-//! long as the session, since that signal follows the thread that started the process.
+//! long as the session, since that signal follows the thread that started the process. For the rest
+//! of the group there is the [`watchdog`](super::watchdog).
 
 use std::io::{self, Read, Write};
 use std::path::Path;
@@ -15,12 +16,16 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use process_wrap::std::{ChildWrapper, CommandWrap, ProcessGroup};
+use rustix::process::{Pid, WaitId, WaitIdOptions, waitid};
 
 use super::reply::{Reply, Splitter};
+use super::watchdog::{self, Watched};
 use crate::deadline::Deadline;
 
 /// How often to look at the clock and the cancel flag while waiting.
 const TICK: Duration = Duration::from_millis(20);
+/// How long output may still come after the process has exited.
+const ABANDONED: Duration = Duration::from_millis(300);
 /// How much of standard error is remembered.
 const TAIL: usize = 4096;
 /// Unread replies while we are still sending: more than this is no dialogue.
@@ -45,7 +50,10 @@ pub(super) struct Process {
     splitter: Splitter,
     ended: bool,
     cut: bool,
-    reaped: bool,
+    watched: Option<Watched>,
+    status: Option<String>,
+    /// Since when it is known to have exited, though something holds its output open.
+    exited: Option<Instant>,
 }
 
 impl Process {
@@ -60,8 +68,11 @@ impl Process {
         let (input, chunks) = mpsc::sync_channel::<Vec<u8>>(16);
         let (started, start) = mpsc::channel();
         thread::Builder::new().name("solver input".into()).spawn(move || keep(command, &started, &chunks))?;
+        // Meanwhile: it takes as long as starting the solver.
+        watchdog::begin();
         let ended = || io::Error::other("the thread that starts solvers ended");
         let mut child = start.recv().map_err(|_| ended())??;
+        let watched = Some(Watched::group(child.id()));
         let stdout = child.stdout().take().ok_or_else(ended)?;
         let stderr = child.stderr().take().ok_or_else(ended)?;
         let (sender, output) = mpsc::sync_channel(16);
@@ -79,7 +90,9 @@ impl Process {
             splitter: Splitter::default(),
             ended: false,
             cut: false,
-            reaped: false,
+            watched,
+            status: None,
+            exited: None,
         })
     }
 
@@ -100,6 +113,28 @@ impl Process {
                 return;
             }
         }
+    }
+
+    /// There is no more to send.
+    pub(super) fn close_input(&mut self) {
+        // The keeper takes an empty piece for the end.
+        let _ = self.input.try_send(Vec::new());
+    }
+
+    /// What it has said already; of this, nothing can be the answer to what is asked from now on.
+    pub(super) fn said_before(&mut self) -> Option<Reply> {
+        while let Ok(chunk) = self.output.try_recv() {
+            self.splitter.feed(&chunk);
+            if self.stuck() {
+                break;
+            }
+        }
+        self.splitter.next()
+    }
+
+    /// Whether it can say nothing more.
+    pub(super) fn has_ended(&self) -> bool {
+        self.ended
     }
 
     fn stuck(&self) -> bool {
@@ -144,12 +179,27 @@ impl Process {
     fn drain(&mut self, wait: Duration) {
         match self.output.recv_timeout(wait) {
             Ok(chunk) => self.splitter.feed(&chunk),
+            Err(RecvTimeoutError::Timeout) if self.is_abandoned() => self.end(),
             Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => {
-                self.ended = true;
-                self.splitter.finish();
-            }
+            Err(RecvTimeoutError::Disconnected) => self.end(),
         }
+    }
+
+    fn end(&mut self) {
+        self.ended = true;
+        self.splitter.finish();
+    }
+
+    /// Whether the process has exited a while ago: a child of its own that holds the output open has nothing to say.
+    fn is_abandoned(&mut self) -> bool {
+        if self.exited.is_none() && self.pid().is_none_or(has_exited) {
+            self.exited = Some(Instant::now());
+        }
+        self.exited.is_some_and(|exited| exited.elapsed() > ABANDONED)
+    }
+
+    fn pid(&self) -> Option<Pid> {
+        i32::try_from(self.child.id()).ok().and_then(Pid::from_raw)
     }
 
     /// The end of what it wrote to standard error.
@@ -160,45 +210,52 @@ impl Process {
 
     /// Kills the whole group and gives the exit status: the process's own, if it had ended before.
     pub(super) fn kill(&mut self) -> String {
-        if self.ended {
-            // Output is closed: it is probably about to end by itself, with a status worth showing.
-            self.wait(Duration::from_millis(200));
+        if let Some(status) = &self.status {
+            return status.clone();
         }
-        // Fails only if nothing is left of the group.
+        // Output is closed: it is probably about to end by itself, with a status worth showing.
+        let patience = Duration::from_millis(if self.ended { 200 } else { 0 });
+        let pid = self.pid();
+        let own_end = wait_until(patience, || pid.is_none_or(has_exited).then_some(())).is_some();
+        // Fails only if nothing is left of the group. Nobody has waited for the process yet, so the number is its own.
         let _ = self.child.start_kill();
-        let status = self.wait(Duration::from_secs(2));
+        self.watched = None;
+        let status = wait_until(Duration::from_secs(2), || self.child.try_wait().ok().flatten());
         // What it said last may be on its way yet. Only a process that left the group can keep the pipe open.
-        let end = Instant::now() + Duration::from_millis(200);
-        while !self.error_reader.is_finished() && Instant::now() < end {
-            thread::sleep(Duration::from_millis(1));
-        }
-        match status {
-            Some(status) => status.to_string(),
-            None => "killed".to_owned(),
-        }
-    }
-
-    fn wait(&mut self, at_most: Duration) -> Option<ExitStatus> {
-        let end = Instant::now() + at_most;
-        loop {
-            if let Ok(Some(status)) = self.child.try_wait() {
-                self.reaped = true;
-                return Some(status);
-            }
-            if Instant::now() >= end {
-                return None;
-            }
-            thread::sleep(Duration::from_millis(2));
-        }
+        wait_until(Duration::from_millis(200), || self.error_reader.is_finished().then_some(()));
+        let status = match status {
+            Some(status) if own_end => ExitStatus::to_string(&status),
+            _ if self.ended => "it closed its output".to_owned(),
+            _ => "killed".to_owned(),
+        };
+        self.status = Some(status.clone());
+        status
     }
 }
 
 impl Drop for Process {
     fn drop(&mut self) {
-        if !self.reaped {
-            self.kill();
-        }
+        self.kill();
     }
+}
+
+fn wait_until<T>(at_most: Duration, mut done: impl FnMut() -> Option<T>) -> Option<T> {
+    let end = Instant::now() + at_most;
+    loop {
+        if let Some(result) = done() {
+            return Some(result);
+        }
+        if Instant::now() >= end {
+            return None;
+        }
+        thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// Whether the process has ended; it stays to be waited for.
+fn has_exited(pid: Pid) -> bool {
+    let options = WaitIdOptions::EXITED | WaitIdOptions::NOWAIT | WaitIdOptions::NOHANG;
+    !matches!(waitid(WaitId::Pid(pid), options), Ok(None))
 }
 
 /// Starts the process, then writes to it until the session ends.
@@ -213,11 +270,14 @@ fn keep(
         stdin = child.stdin().take();
         child
     });
-    // If nobody waits for it, the session was given up; the child dies with this thread.
+    // If nobody waits for it, the session was given up; on Linux the child dies with this thread.
     if started.send(child).is_err() {
         return;
     }
     while let Ok(chunk) = chunks.recv() {
+        if chunk.is_empty() {
+            stdin = None;
+        }
         let written =
             stdin.as_mut().map_or(Ok(()), |pipe| pipe.write_all(&chunk).and_then(|()| pipe.flush()));
         if written.is_err() {

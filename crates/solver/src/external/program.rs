@@ -1,0 +1,101 @@
+//! What is run for a session.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::discover::{locate, search};
+use super::profile::{FILE, Profile, Theory};
+use super::version::Version;
+use crate::error::Error;
+use crate::session::{Options, Quantifiers};
+
+/// A program with its arguments.
+pub(super) struct Program {
+    pub(super) name: String,
+    pub(super) version: Version,
+    pub(super) path: PathBuf,
+    pub(super) arguments: Vec<String>,
+    /// A process answers one check; the next check starts a new one.
+    pub(super) one_shot: bool,
+    /// What is known of it.
+    pub(super) profile: Option<Arc<Profile>>,
+}
+
+impl Program {
+    /// The program of a solver that is known by name.
+    pub(super) fn of_profile(profile: &Arc<Profile>, options: &Options) -> Result<Program, Error> {
+        options.demand_at_most(profile.quantifiers, &profile.name)?;
+        let (path, tried) = locate(profile);
+        let hint = || format!("{}; or set {}", profile.install, profile.variable());
+        let path = path.ok_or_else(|| Error::Missing { name: profile.name.clone(), tried, hint: hint() })?;
+        let one_shot = !profile.incremental || options.quantifiers() > Quantifiers::None;
+        let one_shot = profile.one_shot.as_ref().filter(|_| one_shot);
+        Ok(Program {
+            name: profile.name.clone(),
+            version: Version::of(&path, &profile.version),
+            path,
+            arguments: one_shot.unwrap_or(&profile.arguments).clone(),
+            one_shot: one_shot.is_some() || !profile.incremental,
+            profile: Some(Arc::clone(profile)),
+        })
+    }
+
+    /// The program of a command line. One that names `{file}` is given the query in a file.
+    pub(super) fn of_command(line: &str) -> Result<Program, Error> {
+        let mut words = split_words(line).into_iter();
+        let program = words.next().unwrap_or_default();
+        let (path, tried) = search(&program);
+        let hint =
+            "give the name of a known solver (`hyperplan solvers` lists them) or of a program".to_owned();
+        let path = path.ok_or_else(|| Error::Missing { name: program.clone(), tried, hint })?;
+        let name = Path::new(&program)
+            .file_name()
+            .map_or(program.clone(), |name| name.to_string_lossy().into_owned());
+        let arguments: Vec<String> = words.collect();
+        let one_shot = arguments.iter().any(|argument| argument.contains(FILE));
+        // A command need not know `--version`: what it is stays unknown.
+        Ok(Program { name, version: Version::none(), path, arguments, one_shot, profile: None })
+    }
+
+    /// Whether the query comes in a file.
+    pub(super) fn takes_file(&self) -> bool {
+        self.arguments.iter().any(|argument| argument.contains(FILE))
+    }
+
+    /// Whether to ask for the version in the dialogue.
+    pub(super) fn is_to_tell_version(&self) -> bool {
+        !self.version.is_known() && self.profile.as_ref().is_some_and(|profile| profile.tells_version)
+    }
+
+    /// Whether it takes bit-vectors, as far as it is known.
+    pub(super) fn has_bit_vectors(&self) -> bool {
+        self.profile.as_ref().is_none_or(|profile| profile.takes(Theory::BitVectors))
+    }
+
+    /// The commands that come first.
+    pub(super) fn setup(&self) -> Vec<String> {
+        let usual =
+            || ["(set-option :print-success false)", "(set-option :produce-models true)"].map(str::to_owned);
+        self.profile.as_ref().map_or_else(|| usual().to_vec(), |profile| profile.setup.clone())
+    }
+}
+
+/// Words between blanks; single or double quotes keep blanks together.
+fn split_words(line: &str) -> Vec<String> {
+    let mut words = Vec::new();
+    let mut word: Option<String> = None;
+    let mut quote = None;
+    for c in line.chars() {
+        match quote {
+            Some(q) if c == q => quote = None,
+            None if c == '"' || c == '\'' => {
+                quote = Some(c);
+                word.get_or_insert_default();
+            }
+            None if c.is_whitespace() => words.extend(word.take()),
+            _ => word.get_or_insert_default().push(c),
+        }
+    }
+    words.extend(word);
+    words
+}
