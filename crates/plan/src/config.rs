@@ -184,6 +184,8 @@ pub struct Outcome {
     pub solver: Identity,
     /// How quantifiers were decided.
     pub quantifiers: Quantifiers,
+    /// Why they were decided so, where the choice was ours.
+    pub because: Option<&'static str>,
     /// How states were written.
     pub states: States,
     /// Rounds: checks of the outermost query.

@@ -15,8 +15,8 @@
 
 use crate::config::{Config, Error, Outcome, Seconds, Verdict};
 use crate::lasting::{conjuncts, lasting};
-use crate::solve::solve_sharing;
-use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Query, States};
+use crate::solve::{SLACKS, solve_sharing};
+use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Narrowing, Query, States};
 use hyperplan_problem::{FormulaId, Node, Objective, Problem, Quantifier};
 use hyperplan_solver::Size;
 use std::ops::RangeInclusive;
@@ -296,5 +296,13 @@ fn hopeless(
     }
     let goal = Goal::new(&objective.formula, true);
     let leading = objective.leading_block();
-    Query::new(&encoder, &[]).is_hopeless(&leading, &goal)
+    // Two steps, as most questions here are answered by the first.
+    for slack in [SLACKS[0], None] {
+        let mut query = Query::new(&encoder, &[]).narrowed(Narrowing { slack, one_run: false });
+        let hopeless = query.is_hopeless(&leading, &goal)?;
+        if !hopeless || query.is_exact() {
+            return Ok(hopeless);
+        }
+    }
+    Ok(true)
 }

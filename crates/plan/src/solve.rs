@@ -14,7 +14,7 @@ use std::time::Instant;
 
 /// Runs that are hardly longer than the shortest make small queries, so they are tried first; then longer ones, and
 /// then all, if there are others.
-const SLACKS: [Option<u32>; 4] = [Some(4), Some(16), Some(64), None];
+pub(crate) const SLACKS: [Option<u32>; 4] = [Some(4), Some(16), Some(64), None];
 
 /// After so many checks a search over infinitely many choices is taken to have no end.
 const ENDLESS: u32 = 200;
@@ -135,6 +135,8 @@ fn unknown(objective: &Objective, encoder: &Encoder<'_>, config: &Config) -> Out
         verified: None,
         solver: Oracle::new(config).identity(),
         quantifiers,
+        because: (blocks(objective).len() == 1)
+            .then_some("there is one block of quantifiers, so one query decides"),
         states: States::from(encoder.states),
         iterations: 0,
         size: Size::default(),
@@ -168,6 +170,9 @@ fn search(
             Quantifiers::Auto => direct::sweep(encoder, &blocks, want, narrowing)?,
             _ => None,
         };
+        if choice == Quantifiers::Auto {
+            outcome.because = Some(reason(encoder, &blocks, query.is_some()));
+        }
         let (found, exact) = if let Some(query) = query {
             outcome.quantifiers = Quantifiers::Expand;
             outcome.iterations += 1;
@@ -187,6 +192,7 @@ fn search(
                 // Numbers without bounds have infinitely many counterexamples; the solver may know better.
                 Err(Stop::Unknown(reason)) if !patient && !config.deadline.passed() => {
                     outcome.quantifiers = Quantifiers::Keep;
+                    outcome.because = Some("a search by counterexamples found no end");
                     return match keep(encoder, config, oracle, &blocks, want) {
                         // Not every solver takes every prefix of quantifiers.
                         Err(Stop::Error(error)) if error.exit_code() == 2 => Err(Stop::Unknown(reason)),
@@ -201,6 +207,17 @@ fn search(
         }
     }
     Ok(None)
+}
+
+/// Why quantifiers are decided as they are, where the choice is ours.
+fn reason(encoder: &Encoder<'_>, blocks: &[Vec<PathId>], swept: bool) -> &'static str {
+    match blocks {
+        _ if swept => "all runs of the other player's only path can be followed at once",
+        [_, last] if last.len() > 1 => "the other player has several paths",
+        [_, _] if encoder.states != encode::States::Onehot => "states are not written one by one",
+        [_, _] => "there are too many runs of the other player's path to follow all at once",
+        _ => "the quantifiers alternate more than once",
+    }
 }
 
 /// Which runs of the leading block are tried, one after the other. Where the choice is ours, a search finds a run that is

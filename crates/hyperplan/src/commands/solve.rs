@@ -259,6 +259,9 @@ impl<'a> Found<'a> {
             seconds.total
         );
         if verbose {
+            if let Some(because) = self.outcome.because {
+                text.push_str(&format!("quantifiers {quantifiers}: {because}\n"));
+            }
             let Seconds { read, encode, solve, verify, .. } = seconds;
             let Size { variables, clauses } = size;
             text.push_str(&format!(
