@@ -25,6 +25,8 @@
 mod atoms;
 mod bound;
 mod explore;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use explore::Exploration;
 
