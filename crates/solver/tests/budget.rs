@@ -2,10 +2,14 @@
 
 #![cfg(any(feature = "cadical", feature = "batsat"))]
 
+#[path = "common/pigeons.rs"]
+mod pigeons;
+
 use std::time::{Duration, Instant};
 
 use hyperplan_smt::{Script, Sort, Term, Terms};
 use hyperplan_solver::{Answer, Deadline, Options, Spec, open};
+use pigeons::pigeons;
 
 /// The last of so many products, each of the one before and itself plus the next constant: some fifty thousand
 /// clauses each.
@@ -26,25 +30,6 @@ fn endless() -> Script {
     let (x, last) = products(&mut script.terms, 200_000);
     let claim = script.terms.eq(x, last);
     script.assert(claim);
-    script
-}
-
-/// More pigeons than holes.
-fn pigeons(holes: usize) -> Script {
-    let mut script = Script::new();
-    let stem = script.terms.stem("in");
-    let places = 0..((holes + 1) * holes) as u32;
-    let at: Vec<Term> = places.map(|i| script.terms.symbol(stem, Some(i), Sort::Bool)).collect();
-    for pigeon in at.chunks(holes) {
-        script.clause(pigeon);
-    }
-    for hole in 0..holes {
-        for a in 0..=holes {
-            for b in 0..a {
-                script.clause(&[!at[a * holes + hole], !at[b * holes + hole]]);
-            }
-        }
-    }
     script
 }
 
@@ -116,15 +101,6 @@ fn encoding_stops_at_the_memory_limit() {
     let mut session = open(&Spec::Builtin, &options).expect("it is built in");
     let answer = session.check(&script, &[], &Deadline::after(Duration::from_secs(300))).expect("no error");
     assert_eq!(answer, Answer::Unknown("memory limit of 64 MiB reached".to_owned()));
-}
-
-#[test]
-fn search_stops_at_the_memory_limit() {
-    let script = pigeons(12);
-    let options = Options { memory_mib: Some(1), ..Options::default() };
-    let mut session = open(&Spec::Builtin, &options).expect("it is built in");
-    let answer = session.check(&script, &[], &Deadline::after(Duration::from_secs(300))).expect("no error");
-    assert_eq!(answer, Answer::Unknown("memory limit of 1 MiB reached".to_owned()));
 }
 
 #[test]

@@ -1,0 +1,21 @@
+//! The memory limit of a search, in a process of its own: memory that another test has given back would be taken again
+//! before the process grows.
+
+#![cfg(any(feature = "cadical", feature = "batsat"))]
+
+#[path = "common/pigeons.rs"]
+mod pigeons;
+
+use std::time::Duration;
+
+use hyperplan_solver::{Answer, Deadline, Options, Spec, open};
+use pigeons::pigeons;
+
+#[test]
+fn search_stops_at_the_memory_limit() {
+    let script = pigeons(12);
+    let options = Options { memory_mib: Some(1), ..Options::default() };
+    let mut session = open(&Spec::Builtin, &options).expect("it is built in");
+    let answer = session.check(&script, &[], &Deadline::after(Duration::from_secs(300))).expect("no error");
+    assert_eq!(answer, Answer::Unknown("memory limit of 1 MiB reached".to_owned()));
+}
