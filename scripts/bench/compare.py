@@ -1,6 +1,9 @@
 """Ratios, each of two measurements of the same run of the script."""
 
+import itertools
+import pathlib
 import shutil
+from typing import NamedTuple
 
 from bench import maps, run
 from bench.context import Context, seconds, table, times, verdict
@@ -57,26 +60,54 @@ def quantifiers(context: Context) -> None:
                 context.show("quantifiers", table(header, rows))
 
 
+BY_HAND = {"z3": ["z3"], "yices": ["yices-smt2", "--incremental"], "cvc5": ["cvc5", "--incremental"]}
+
+
 def external(context: Context) -> None:
     """The time spent waiting for a solver against that of the solver alone on the files of the same queries."""
-    header = ["objective", "size", "solver", "queries", "waiting for it", "on the files", "ratio (target 1.1)"]
-    rows = []
-    commands = {"z3": ["z3"], "yices": ["yices-smt2", "--incremental"], "cvc5": ["cvc5", "--incremental"]}
-    for size in (n for n in context.sizes if n <= 20):
-        for objective in context.objectives:
+    header = ["objective", "size", "quantifiers", "solver", "queries", "waiting for it", "on the files"]
+    header.append("ratio (target 1.1)")
+    rows: list[list[str]] = []
+    for solver in (name for name in context.solvers if name in BY_HAND):
+        talks: list[Talk] = []
+        sizes = [n for n in context.sizes if n <= 20]
+        for size, objective, how in itertools.product(sizes, context.objectives, ("auto", "expand")):
             file = maps.case_study(objective, size, context.folder)
-            for solver in (name for name in context.solvers if name in commands):
-                folder = context.folder / f"queries-{objective}-{size}-{solver}"
-                # One run, whose queries are kept; those timed keep none.
-                run.once(context.command(file, "--solver", solver, "--queries", str(folder)), context.timeout)
-                files = sorted(folder.glob("*.smt2")) if folder.is_dir() else []
-                done = context.solve(file, "--solver", solver)
-                alone = [run.wall([*commands[solver], str(query)], context.runs, context.timeout) for query in files]
-                total = sum(time for time in alone if time is not None)
-                waited = (done.answer.get("seconds") or {}).get("solve") if done.problem is None else None
-                fair = None if not files or None in alone else total
-                cells = [objective, f"{size} x {size}", solver, str(len(files))]
-                cells += [seconds(waited) if waited else shown(done), seconds(fair), times(waited, fair, 1.1)]
-                rows.append(cells)
-                context.show("external", table(header, rows))
-                shutil.rmtree(folder, ignore_errors=True)
+            done, talk = talked(context, file, "--solver", solver, "--quantifiers", how)
+            cells = [objective, f"{size} x {size}", how, solver, str(talk.queries)]
+            cells += [seconds(talk.waited) if talk.waited else shown(done), seconds(talk.alone)]
+            rows.append([*cells, times(talk.waited, talk.alone, 1.1)])
+            talks.append(talk)
+            context.show("external", table(header, rows))
+        rows.append(["all", "", "", solver, *together(talks)])
+        context.show("external", table(header, rows))
+
+
+class Talk(NamedTuple):
+    """So many queries, the time spent waiting for their answers, and that of the solver alone."""
+
+    queries: int
+    waited: float | None
+    alone: float | None
+
+
+def talked(context: Context, file: pathlib.Path, *options: str) -> tuple[Run, Talk]:
+    """A run, and what talking cost."""
+    folder = context.folder / "queries"
+    # One run, whose queries are kept; those timed keep none.
+    run.once(context.command(file, *options, "--queries", str(folder)), context.timeout)
+    files = sorted(folder.glob("*.smt2")) if folder.is_dir() else []
+    done = context.solve(file, *options)
+    by_hand = BY_HAND[options[1]]
+    alone = [run.wall([*by_hand, str(query)], context.runs, context.timeout) for query in files]
+    shutil.rmtree(folder, ignore_errors=True)
+    waited = (done.answer.get("seconds") or {}).get("solve") if done.problem is None else None
+    known = [time for time in alone if time is not None]
+    return done, Talk(len(files), waited, sum(known) if files and len(known) == len(files) else None)
+
+
+def together(talks: list[Talk]) -> list[str]:
+    """All queries of a solver at once, where both times are known."""
+    both = [talk for talk in talks if talk.waited is not None and talk.alone is not None]
+    waited, alone = (sum(getattr(talk, name) for talk in both) for name in ("waited", "alone"))
+    return [str(sum(talk.queries for talk in both)), seconds(waited), seconds(alone), times(waited, alone, 1.1)]
