@@ -1,0 +1,105 @@
+//! One finished run, as a line of a comparison's log.
+
+use serde::{Deserialize, Serialize};
+
+/// What a run ended with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Status {
+    /// Satisfiable; of an objective: realizable.
+    Sat,
+    /// Unsatisfiable; of an objective: unrealizable.
+    Unsat,
+    /// The solver gave up by itself.
+    Unknown,
+    /// Out of time, wall or CPU.
+    Timeout,
+    /// Out of memory.
+    Memout,
+    /// The solver crashed, was missing, or said nothing that could be understood.
+    Error,
+    /// The request made no sense for this solver or encoding; not counted against the solver.
+    Unsupported,
+}
+
+/// An answer that is known to be right.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Answer {
+    /// Satisfiable, realizable.
+    Sat,
+    /// Unsatisfiable, unrealizable.
+    Unsat,
+}
+
+/// The limits of one run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Limit {
+    /// Wall time, in seconds.
+    pub wall_s: Option<f64>,
+    /// CPU time of the whole process group, in seconds.
+    pub cpu_s: Option<f64>,
+    /// Peak memory of the whole process group, in MiB.
+    pub memory_mib: Option<u64>,
+}
+
+/// One finished run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// The file, and for a problem file the objective: `specs/rooms.hp#fastest`.
+    pub instance: String,
+    /// Where the instance belongs in tables by family: its folder.
+    pub family: String,
+    /// Of the file's bytes, in hexadecimal.
+    pub sha256: String,
+    /// The logic of what the solver got, where known.
+    pub logic: Option<String>,
+    /// How states were written; `None` for a query.
+    pub states: Option<String>,
+    /// How quantifiers were decided; `None` for a query.
+    pub quantifiers: Option<String>,
+    /// The largest horizon of a path.
+    pub horizon: Option<u64>,
+    /// The constants that were set, `T=12`, in order.
+    pub set: Vec<String>,
+    /// The solver, as it was asked for.
+    pub solver: String,
+    /// What the solver says its version is.
+    pub version: Option<String>,
+    /// Further options of the run, as on a command line.
+    pub options: String,
+    /// The seed.
+    pub seed: u64,
+    /// Which of the repetitions, from 0.
+    pub repetition: u32,
+    /// How it ended.
+    pub status: Status,
+    /// The right answer, where it is known.
+    pub expected: Option<Answer>,
+    /// How the witness was checked (`by-search`, `by-solver`); of a query, `model`. `refuted` where it fails.
+    pub verified: Option<String>,
+    /// Wall time, in seconds.
+    pub wall_s: f64,
+    /// CPU time, user and system, of the whole process group, in seconds.
+    pub cpu_s: f64,
+    /// Peak memory of the whole process group, in MiB.
+    pub memory_mib: f64,
+    /// The limits that it ran under.
+    pub limit: Limit,
+    /// The exit code; `None` where a signal ended it.
+    pub exit_code: Option<i32>,
+    /// The signal that ended it.
+    pub signal: Option<i32>,
+    /// The machine.
+    pub host: String,
+    /// Symbols of the largest query.
+    pub variables: Option<u64>,
+    /// Assertions of the largest query.
+    pub assertions: Option<u64>,
+    /// Bytes of the largest query, where it was written as text.
+    pub bytes: Option<u64>,
+    /// The last thing that was said, where the run did not end with an answer.
+    pub message: Option<String>,
+    /// Where its queries are kept, relative to the log.
+    pub queries: Option<String>,
+}
