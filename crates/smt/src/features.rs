@@ -17,6 +17,8 @@ pub struct Features {
     pub int: bool,
     /// A term of sort Real.
     pub real: bool,
+    /// A term of an enumeration.
+    pub datatypes: bool,
 }
 
 impl Features {
@@ -39,7 +41,14 @@ impl Features {
             Sort::BitVec(_) => self.bitvec = true,
             Sort::Int => self.int = true,
             Sort::Real => self.real = true,
+            Sort::Enum(_) => self.datatypes = true,
         }
+    }
+
+    /// With the enumerations of the arena, whether they occur or not: for a dialogue in which they may yet.
+    #[must_use]
+    pub fn beside(self, terms: &Terms) -> Features {
+        Features { datatypes: self.datatypes || terms.has_enumerations(), ..self }
     }
 
     /// Both.
@@ -51,15 +60,19 @@ impl Features {
             bitvec: self.bitvec | other.bitvec,
             int: self.int | other.int,
             real: self.real | other.real,
+            datatypes: self.datatypes | other.datatypes,
         }
     }
 }
 
-/// The smallest logic for those features. Mixtures of bit-vectors and numbers are in no
+/// The smallest logic for those features. Mixtures of bit-vectors, numbers and enumerations are in no
 /// competition logic; they get `ALL`.
 #[must_use]
 pub fn logic(features: &Features) -> &'static str {
-    let Features { quantifiers, booleans: _, bitvec, int, real } = *features;
+    let Features { quantifiers, booleans: _, bitvec, int, real, datatypes } = *features;
+    if datatypes {
+        return if bitvec || int || real { "ALL" } else { ["QF_DT", "UFDT"][usize::from(quantifiers)] };
+    }
     match (bitvec, int, real) {
         (false, false, false) => ["QF_UF", "UF"][usize::from(quantifiers)],
         (true, false, false) => ["QF_BV", "BV"][usize::from(quantifiers)],

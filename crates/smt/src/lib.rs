@@ -20,7 +20,7 @@ pub use features::{Features, logic};
 pub use name::symbol_text;
 pub use rational::Rational;
 pub use script::Script;
-pub use term::{Op, Sort, Stem, Term};
+pub use term::{Enumeration, Op, Sort, Stem, Term};
 pub use terms::{Terms, View};
 pub use value::{Model, Value};
 pub use write::{Header, Printer, Status, WriteOptions, term_text, value_text, write_script};

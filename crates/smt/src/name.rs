@@ -50,6 +50,19 @@ impl Mangled {
         let quoted = !text.chars().all(simple) || text.starts_with(|c: char| c.is_ascii_digit() || c == '@');
         Mangled { quoted: quoted || text.is_empty(), word: is_word(&text), text: text.into() }
     }
+
+    /// Writes it as a name that has no time: of a sort or a constructor.
+    pub(crate) fn write(&self, w: &mut impl io::Write) -> io::Result<()> {
+        let (quote, mark) = (if self.quoted { "|" } else { "" }, if self.word { "@" } else { "" });
+        write!(w, "{quote}{}{mark}{quote}", self.text)
+    }
+
+    /// Whether the text is the name as [`Mangled::write`] has it, with or without quotes.
+    pub(crate) fn is_written(&self, text: &str) -> bool {
+        let inner = text.strip_prefix('|').and_then(|text| text.strip_suffix('|')).unwrap_or(text);
+        let inner = if self.word { inner.strip_suffix('@') } else { Some(inner) };
+        inner == Some(&*self.text)
+    }
 }
 
 /// Whether SMT-LIB or a solver may have a meaning for the word.
@@ -162,9 +175,19 @@ impl Sym2Smt for SymbolName<'_> {
     }
 }
 
-impl Sort2Smt for Sort {
+/// A sort of an arena, for printing.
+pub(crate) struct SortName<'a> {
+    pub(crate) terms: &'a Terms,
+    pub(crate) sort: Sort,
+}
+
+impl Sort2Smt for SortName<'_> {
     fn sort_to_smt2<W: io::Write>(&self, w: &mut W) -> SmtRes<()> {
-        Ok(write!(w, "{self}")?)
+        match self.sort {
+            Sort::Enum(enumeration) => self.terms.enumeration_name(enumeration).write(w)?,
+            sort => write!(w, "{sort}")?,
+        }
+        Ok(())
     }
 }
 

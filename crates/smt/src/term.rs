@@ -83,8 +83,15 @@ pub enum Sort {
     Int,
     /// Real numbers.
     Real,
+    /// A datatype whose constructors are constants.
+    Enum(Enumeration),
 }
 
+/// An enumeration of an arena: a datatype whose constructors are constants.
+#[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct Enumeration(pub(crate) u32);
+
+/// For messages; an enumeration has its name from the arena, which is not here.
 impl fmt::Display for Sort {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -92,6 +99,7 @@ impl fmt::Display for Sort {
             Sort::BitVec(width) => write!(f, "(_ BitVec {width})"),
             Sort::Int => f.write_str("Int"),
             Sort::Real => f.write_str("Real"),
+            Sort::Enum(Enumeration(number)) => write!(f, "enumeration {number}"),
         }
     }
 }
@@ -110,7 +118,7 @@ pub enum Op {
     Symbol,
     /// A variable that a quantifier binds.
     Bound,
-    /// A bit-vector, integer or rational constant.
+    /// A bit-vector, integer or rational constant, or a constructor of an enumeration.
     Const,
     /// Conjunction of two or more.
     And,

@@ -3,7 +3,7 @@
 use rustc_hash::FxHashMap;
 
 use crate::rational::Rational;
-use crate::term::{Sort, Term};
+use crate::term::{Enumeration, Sort, Term};
 
 /// The value of a term.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, Debug)]
@@ -21,6 +21,8 @@ pub enum Value {
     Int(i128),
     /// A rational number.
     Real(Rational),
+    /// A constructor of an enumeration, by its position.
+    Enum(Enumeration, u32),
 }
 
 impl Value {
@@ -38,10 +40,11 @@ impl Value {
             Value::Bv { width, .. } => Sort::BitVec(width),
             Value::Int(_) => Sort::Int,
             Value::Real(_) => Sort::Real,
+            Value::Enum(enumeration, _) => Sort::Enum(enumeration),
         }
     }
 
-    /// False or zero: what a symbol without a value is taken to be.
+    /// False, zero, or the first constructor: what a symbol without a value is taken to be.
     #[must_use]
     pub fn default_of(sort: Sort) -> Value {
         match sort {
@@ -49,6 +52,7 @@ impl Value {
             Sort::BitVec(width) => Value::Bv { width, bits: 0 },
             Sort::Int => Value::Int(0),
             Sort::Real => Value::Real(Rational::ZERO),
+            Sort::Enum(enumeration) => Value::Enum(enumeration, 0),
         }
     }
 
@@ -57,7 +61,16 @@ impl Value {
     pub fn as_bool(self) -> Option<bool> {
         match self {
             Value::Bool(b) => Some(b),
-            Value::Bv { .. } | Value::Int(_) | Value::Real(_) => None,
+            _ => None,
+        }
+    }
+
+    /// The position of a constructor.
+    #[must_use]
+    pub fn as_constructor(self) -> Option<u32> {
+        match self {
+            Value::Enum(_, position) => Some(position),
+            _ => None,
         }
     }
 
@@ -66,7 +79,7 @@ impl Value {
     pub fn as_unsigned(self) -> Option<u128> {
         match self {
             Value::Bv { bits, .. } => Some(bits),
-            Value::Bool(_) | Value::Int(_) | Value::Real(_) => None,
+            _ => None,
         }
     }
 
@@ -76,7 +89,7 @@ impl Value {
         match self {
             Value::Bv { width, bits } => Some(signed(bits, width)),
             Value::Int(i) => Some(i),
-            Value::Bool(_) | Value::Real(_) => None,
+            _ => None,
         }
     }
 }
@@ -94,14 +107,14 @@ pub(crate) fn signed(bits: u128, width: u32) -> i128 {
     ((bits << shift) as i128) >> shift
 }
 
-/// Values of declared symbols. A symbol that has none counts as false or zero: a model is total.
+/// Values of declared symbols. A symbol that has none counts as false, zero or the first constructor: a model is total.
 #[derive(Clone, Debug, Default)]
 pub struct Model {
     values: FxHashMap<Term, Value>,
 }
 
 impl Model {
-    /// The model in which everything is false or zero.
+    /// The model in which everything is as it is without a value.
     #[must_use]
     pub fn new() -> Self {
         Model::default()
@@ -111,7 +124,7 @@ impl Model {
     pub fn insert(&mut self, symbol: Term, value: Value) {
         let value = match value {
             Value::Bool(b) => Value::Bool(b ^ symbol.is_negated()),
-            Value::Bv { .. } | Value::Int(_) | Value::Real(_) => value,
+            _ => value,
         };
         self.values.insert(symbol.positive(), value);
     }
@@ -122,7 +135,7 @@ impl Model {
         let value = *self.values.get(&symbol.positive())?;
         Some(match value {
             Value::Bool(b) => Value::Bool(b ^ symbol.is_negated()),
-            Value::Bv { .. } | Value::Int(_) | Value::Real(_) => value,
+            _ => value,
         })
     }
 

@@ -138,7 +138,7 @@ fn integers_and_reals() {
         assert_eq!(check, Answer::Sat, "{name}");
         let values = session.values(&script, &[n, r]).expect("values");
         assert_eq!(values[0].as_signed(), Some(-7), "{name}");
-        assert_eq!(hyperplan_smt::value_text(values[1]), "(- (/ 1.0 3.0))", "{name}");
+        assert_eq!(hyperplan_smt::value_text(&script.terms, values[1]), "(- (/ 1.0 3.0))", "{name}");
         let builtin = open(&Spec::Builtin, &Options::default());
         let check = builtin.and_then(|mut session| session.check(&script, &[], &Deadline::never()));
         assert!(matches!(check, Err(Error::Unsupported { .. })));

@@ -3,6 +3,7 @@
 mod arith;
 mod bitvec;
 mod boolean;
+mod enumeration;
 mod quantifier;
 mod view;
 
@@ -59,6 +60,12 @@ impl Entry {
     }
 }
 
+/// What an enumeration and its constructors are called.
+struct EnumerationText {
+    name: name::Mangled,
+    constructors: Vec<name::Mangled>,
+}
+
 struct StemText {
     text: Box<str>,
     symbol: name::Mangled,
@@ -77,6 +84,7 @@ pub struct Terms {
     table: HashTable<Entry>,
     stems: Vec<StemText>,
     stem_ids: FxHashMap<Box<str>, Stem>,
+    enumerations: Vec<EnumerationText>,
     scratch: Vec<Term>,
 }
 
@@ -95,6 +103,7 @@ impl Terms {
             table: HashTable::new(),
             stems: Vec::new(),
             stem_ids: FxHashMap::default(),
+            enumerations: Vec::new(),
             scratch: Vec::new(),
         };
         let top = terms.intern(Op::True, Sort::Bool, &[]);
@@ -168,6 +177,11 @@ impl Terms {
                 self.intern(Op::Const, sort, &words[..width.div_ceil(32) as usize])
             }
             Value::Int(i) => self.intern(Op::Const, Sort::Int, &words_of(i as u128)),
+            Value::Enum(enumeration, position) => {
+                let sort = Sort::Enum(enumeration);
+                assert!(position < self.constructors(enumeration), "{sort} has no constructor {position}");
+                self.intern(Op::Const, sort, &[Term(position)])
+            }
             Value::Real(r) => {
                 let numerator = words_of(r.numerator() as u128);
                 let denominator = words_of(r.denominator() as u128);
@@ -191,6 +205,7 @@ impl Terms {
             Sort::Bool => Value::Bool(true),
             Sort::BitVec(width) => Value::Bv { width, bits: word(words) },
             Sort::Int => Value::Int(word(words) as i128),
+            Sort::Enum(enumeration) => Value::Enum(enumeration, words[0].0),
             Sort::Real => {
                 let (numerator, denominator) = words.split_at(4);
                 let r = Rational::new(word(numerator) as i128, word(denominator) as i128);

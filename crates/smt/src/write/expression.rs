@@ -9,7 +9,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::free::Free;
 use super::io_error;
-use crate::name::{SymbolName, write_number};
+use crate::name::{SortName, SymbolName, write_number};
 use crate::term::{Op, Term};
 use crate::terms::{Terms, View};
 use crate::value::Value;
@@ -124,7 +124,7 @@ impl Walk<'_> {
             (View::Const(Value::Bool(_)), negated) => {
                 Ok(w.write_all(if negated { b"false" } else { b"true" })?)
             }
-            (View::Const(value), _) => Ok(write_value(w, value)?),
+            (View::Const(value), _) => Ok(write_value(w, terms, value)?),
             (View::Symbol(..) | View::Bound(..), false) => Ok(SymbolName::new(terms, t).sym_to_smt2(w, ())?),
             (View::App(Op::And, conjuncts), true) => self.application(w, "or", conjuncts.iter().map(|&t| !t)),
             (View::App(Op::BvUlt, &[a, b]), true) => self.application(w, "bvule", [b, a].into_iter()),
@@ -177,7 +177,7 @@ impl Walk<'_> {
             w.write_all(if i == 0 { b"(" } else { b" (" })?;
             SymbolName::new(self.of.terms, variable).sym_to_smt2(w, ())?;
             w.write_all(b" ")?;
-            self.of.terms.sort(variable).sort_to_smt2(w)?;
+            SortName { terms: self.of.terms, sort: self.of.terms.sort(variable) }.sort_to_smt2(w)?;
             w.write_all(b")")?;
         }
         w.write_all(b") ")?;
@@ -268,13 +268,14 @@ impl Walk<'_> {
 }
 
 /// Writes a constant. Also useful for showing values.
-pub(crate) fn write_value(w: &mut impl io::Write, value: Value) -> io::Result<()> {
+pub(crate) fn write_value(w: &mut impl io::Write, terms: &Terms, value: Value) -> io::Result<()> {
     match value {
         Value::Bool(b) => write!(w, "{b}"),
         Value::Bv { width, bits } if width.is_multiple_of(4) => {
             write!(w, "#x{bits:0digits$x}", digits = (width / 4) as usize)
         }
         Value::Bv { width, bits } => write!(w, "#b{bits:0digits$b}", digits = width as usize),
+        Value::Enum(enumeration, position) => terms.constructor_names(enumeration)[position as usize].write(w),
         Value::Int(i) if i < 0 => write!(w, "(- {})", i.unsigned_abs()),
         Value::Int(i) => write!(w, "{i}"),
         Value::Real(r) => {

@@ -134,10 +134,10 @@ pub fn term_text(terms: &Terms, term: Term) -> String {
     text_of(|w| expression::write_plain(w, terms, term))
 }
 
-/// A value as SMT-LIB text.
+/// A value of an arena's sorts as SMT-LIB text.
 #[must_use]
-pub fn value_text(value: Value) -> String {
-    text_of(|w| expression::write_value(w, value))
+pub fn value_text(terms: &Terms, value: Value) -> String {
+    text_of(|w| expression::write_value(w, terms, value))
 }
 
 fn text_of(write: impl FnOnce(&mut Vec<u8>) -> io::Result<()>) -> String {

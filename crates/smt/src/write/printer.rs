@@ -1,5 +1,6 @@
 //! Prints the assertions of a growing script: declarations, definitions of shared terms, assertions.
 
+use std::collections::BTreeSet;
 use std::io;
 
 use rsmt2::print::{Expr2Smt, Sort2Smt, Sym2Smt};
@@ -8,8 +9,8 @@ use super::expression::{Expression, SharedName};
 use super::free::Free;
 use super::io_error;
 use crate::features::Features;
-use crate::name::SymbolName;
-use crate::term::{Op, Term};
+use crate::name::{SortName, SymbolName};
+use crate::term::{Enumeration, Op, Sort, Term};
 use crate::terms::Terms;
 
 /// Terms deeper than this are cut by definitions: solvers' own parsers may recurse.
@@ -27,6 +28,10 @@ pub struct Printer {
     named: Vec<bool>,
     /// Per node, how deep it is when printed inline.
     height: Vec<u8>,
+    /// The enumerations that occur.
+    datatypes: BTreeSet<Enumeration>,
+    /// Those to be declared.
+    undeclared_datatypes: Vec<Enumeration>,
     /// Symbols to be declared.
     undeclared: Vec<Term>,
     /// How many have been.
@@ -60,6 +65,11 @@ impl Printer {
             self.touch(root, &mut stack);
             while let Some(t) = stack.pop() {
                 self.features.add(terms, t);
+                if let Sort::Enum(enumeration) = terms.sort(t)
+                    && self.datatypes.insert(enumeration)
+                {
+                    self.undeclared_datatypes.push(enumeration);
+                }
                 if terms.op(t) == Op::Symbol {
                     self.undeclared.push(t);
                 }
@@ -96,11 +106,12 @@ impl Printer {
         self.declared
     }
 
-    /// Declares the symbols that were found since the last call.
+    /// Declares the enumerations and symbols that were found since the last call.
     ///
     /// # Errors
     /// When writing fails.
     pub fn declare(&mut self, w: &mut impl io::Write, terms: &Terms) -> io::Result<()> {
+        self.declare_datatypes(w, terms)?;
         let mut symbols = std::mem::take(&mut self.undeclared);
         symbols.sort_unstable();
         self.declared += symbols.len();
@@ -108,8 +119,24 @@ impl Printer {
             w.write_all(b"(declare-fun ")?;
             SymbolName::new(terms, symbol).sym_to_smt2(w, ()).map_err(io_error)?;
             w.write_all(b" () ")?;
-            terms.sort(symbol).sort_to_smt2(w).map_err(io_error)?;
+            SortName { terms, sort: terms.sort(symbol) }.sort_to_smt2(w).map_err(io_error)?;
             w.write_all(b")\n")?;
+        }
+        Ok(())
+    }
+
+    /// Declares the enumerations that were found since the last call.
+    fn declare_datatypes(&mut self, w: &mut impl io::Write, terms: &Terms) -> io::Result<()> {
+        for enumeration in std::mem::take(&mut self.undeclared_datatypes) {
+            w.write_all(b"(declare-datatypes ((")?;
+            terms.enumeration_name(enumeration).write(w)?;
+            w.write_all(b" 0)) ((")?;
+            for (at, constructor) in terms.constructor_names(enumeration).iter().enumerate() {
+                w.write_all(if at == 0 { b"(" } else { b" (" })?;
+                constructor.write(w)?;
+                w.write_all(b")")?;
+            }
+            w.write_all(b")))\n")?;
         }
         Ok(())
     }
@@ -182,7 +209,7 @@ impl Printer {
         w.write_all(b"(define-fun ")?;
         SharedName(t).sym_to_smt2(w, ()).map_err(io_error)?;
         w.write_all(b" () ")?;
-        terms.sort(t).sort_to_smt2(w).map_err(io_error)?;
+        SortName { terms, sort: terms.sort(t) }.sort_to_smt2(w).map_err(io_error)?;
         w.write_all(b" ")?;
         self.expression(terms, t, true).expr_to_smt2(w, ()).map_err(io_error)?;
         w.write_all(b")\n")?;

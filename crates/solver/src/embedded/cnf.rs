@@ -241,8 +241,8 @@ impl Cnf {
             let before = stack.len();
             for &child in terms.children(t) {
                 match terms.sort(child) {
-                    Sort::BitVec(_) if self.starts[child.index()].is_none() => stack.push(child),
-                    Sort::BitVec(_) | Sort::Bool => {}
+                    Sort::BitVec(_) | Sort::Enum(_) if self.starts[child.index()].is_none() => stack.push(child),
+                    Sort::BitVec(_) | Sort::Enum(_) | Sort::Bool => {}
                     Sort::Int | Sort::Real => return Err(unsupported("integers and reals").into()),
                 }
             }
@@ -256,22 +256,35 @@ impl Cnf {
         Ok(self.bits_of(terms, t))
     }
 
+    fn number(&self, bits: u128, width: u32) -> Vec<Lit> {
+        (0..width).map(|i| self.gates.constant(bits >> i & 1 == 1)).collect()
+    }
+
+    /// Fresh bits; of an enumeration, those of some constructor.
+    fn symbol(&mut self, terms: &Terms, t: Term, width: u32) -> Vec<Lit> {
+        let bits: Vec<Lit> = (0..width).map(|_| self.gates.fresh()).collect();
+        if let Sort::Enum(enumeration) = terms.sort(t) {
+            let last = self.number(u128::from(terms.constructors(enumeration) - 1), width);
+            let beyond = self.gates.less(&last, &bits, false);
+            self.gates.sat.clause(&[!beyond]);
+        }
+        bits
+    }
+
     fn bits_of(&self, terms: &Terms, t: Term) -> Vec<Lit> {
-        let width = match terms.sort(t) {
-            Sort::BitVec(width) => width,
-            Sort::Bool | Sort::Int | Sort::Real => 0,
-        };
-        self.known_bits(t, width).unwrap_or_default().to_vec()
+        self.known_bits(t, width(terms, t)).unwrap_or_default().to_vec()
     }
 
     /// The circuit of one bit-vector node whose children have their bits.
     fn circuit(&mut self, terms: &Terms, t: Term) -> Result<Vec<Lit>, Error> {
-        let Sort::BitVec(width) = terms.sort(t) else { return Err(unsupported("integers and reals")) };
+        let width = width(terms, t);
+        if width == 0 {
+            return Err(unsupported("integers and reals"));
+        }
         let bits = match terms.view(t) {
-            View::Const(Value::Bv { bits, .. }) => {
-                (0..width).map(|i| self.gates.constant(bits >> i & 1 == 1)).collect()
-            }
-            View::Symbol(..) => (0..width).map(|_| self.gates.fresh()).collect(),
+            View::Const(Value::Bv { bits, .. }) => self.number(bits, width),
+            View::Const(Value::Enum(_, position)) => self.number(u128::from(position), width),
+            View::Symbol(..) => self.symbol(terms, t, width),
             View::Bound(..) | View::Forall(..) => return Err(unsupported("quantifiers")),
             View::Extend(op, a, by) => {
                 let mut bits = self.bits_of(terms, a);
@@ -303,6 +316,15 @@ impl Cnf {
             View::Const(_) | View::App(..) => return Err(unsupported("an operator")),
         };
         Ok(bits)
+    }
+}
+
+/// How many bits stand for a term that is neither Boolean nor a number: a constructor's position is one.
+pub(super) fn width(terms: &Terms, t: Term) -> u32 {
+    match terms.sort(t) {
+        Sort::BitVec(width) => width,
+        Sort::Enum(enumeration) => (terms.constructors(enumeration) - 1).checked_ilog2().map_or(1, |log| log + 1),
+        Sort::Bool | Sort::Int | Sort::Real => 0,
     }
 }
 

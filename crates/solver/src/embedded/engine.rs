@@ -5,7 +5,7 @@ use hyperplan_smt::{Header, Script, Sort, Term, Value, WriteOptions, write_scrip
 use super::backend::Backend;
 use super::bits::Gates;
 use super::budget::{Budget, Halt, Memory};
-use super::cnf::Cnf;
+use super::cnf::{Cnf, width};
 use crate::deadline::Deadline;
 use crate::error::Error;
 use crate::session::{Answer, Identity, Options, Quantifiers, Session, Size};
@@ -77,6 +77,18 @@ impl Engine {
     }
 }
 
+impl Engine {
+    /// The bits of a symbol in the model, as a number; zero if it has not occurred.
+    fn number(&self, script: &Script, symbol: Term) -> Result<u128, Error> {
+        let mut number = 0;
+        let literals = self.cnf.known_bits(symbol, width(&script.terms, symbol)).unwrap_or_default();
+        for (i, &literal) in literals.iter().enumerate() {
+            number |= u128::from(self.cnf.gates.sat.is_true(literal)?) << i;
+        }
+        Ok(number)
+    }
+}
+
 impl Session for Engine {
     fn check(&mut self, script: &Script, assumptions: &[Term], deadline: &Deadline) -> Result<Answer, Error> {
         self.has_model = false;
@@ -114,14 +126,8 @@ impl Session for Engine {
                     let value = literal.map_or(Ok(symbol.is_negated()), |literal| sat.is_true(literal));
                     Value::Bool(value?)
                 }
-                Sort::BitVec(width) => {
-                    let mut bits = 0;
-                    let literals = self.cnf.known_bits(symbol, width).unwrap_or_default();
-                    for (i, &literal) in literals.iter().enumerate() {
-                        bits |= u128::from(sat.is_true(literal)?) << i;
-                    }
-                    Value::Bv { width, bits }
-                }
+                Sort::BitVec(width) => Value::Bv { width, bits: self.number(script, symbol)? },
+                Sort::Enum(enumeration) => Value::Enum(enumeration, self.number(script, symbol)? as u32),
                 sort @ (Sort::Int | Sort::Real) => Value::default_of(sort),
             });
         }

@@ -52,7 +52,8 @@ impl Program {
         }
         let quantifiers = features.quantifiers || options.quantifiers() > Quantifiers::None;
         // Booleans alone would be QF_UF, for which solvers are slower than for bit-vectors.
-        let bitvec = features.bitvec || !features.int && !features.real && self.has_bit_vectors();
+        let numbers = features.int || features.real || features.datatypes;
+        let bitvec = features.bitvec || !numbers && self.has_bit_vectors();
         let smallest = logic(&Features { quantifiers, bitvec, ..features });
         let logic = profile.and_then(|profile| profile.logic.as_deref()).unwrap_or(smallest);
         text += &format!("(set-logic {logic})\n");
@@ -102,7 +103,7 @@ impl Dialogue {
         running.printer.scan(terms, assumptions);
         let mut text = Vec::with_capacity(2 * PIECE);
         if running.checks == 0 {
-            let preamble = self.program.preamble(running.printer.features(), &self.options)?;
+            let preamble = self.program.preamble(running.printer.features().beside(terms), &self.options)?;
             text.extend_from_slice(preamble.as_bytes());
         } else {
             running.exchange.demand_silence()?;

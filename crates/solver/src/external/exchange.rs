@@ -166,7 +166,8 @@ impl Exchange {
     fn sorted(&self, script: &Script, symbols: &[Term], reply: &Reply) -> Option<Vec<Value>> {
         let values = reply::values(reply).filter(|values| values.len() == symbols.len())?;
         let pairs = values.into_iter().zip(symbols);
-        pairs.map(|(value, &symbol)| reply::of_sort(value, script.terms.sort(symbol))).collect()
+        let terms = &script.terms;
+        pairs.map(|(text, &symbol)| reply::value_of_sort(terms, terms.sort(symbol), text)).collect()
     }
 
     /// It ended without the reply that was due.

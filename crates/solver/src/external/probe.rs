@@ -205,7 +205,7 @@ fn judge(reply: &Reply, expected: Expected) -> Ability {
         }
         (Expected::Sat | Expected::Unsat, Meaning::Answer(Some(_))) => wrong(),
         (Expected::Value(value), Meaning::Other) => match reply::values(reply).as_deref() {
-            Some([said]) if *said == value => Ability::Able,
+            Some([said]) if reply::value(said) == Some(value) => Ability::Able,
             Some(_) => wrong(),
             None => Ability::Unable,
         },

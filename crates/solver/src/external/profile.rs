@@ -163,6 +163,7 @@ impl Profile {
             (features.bitvec, Theory::BitVectors),
             (features.int, Theory::Integers),
             (features.real, Theory::Reals),
+            (features.datatypes, Theory::Datatypes),
         ];
         for (_, theory) in needed.into_iter().filter(|(needed, _)| *needed) {
             if !self.takes(theory) {

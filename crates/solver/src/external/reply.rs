@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use hyperplan_smt::{Rational, Sort, Value};
+use hyperplan_smt::{Rational, Sort, Terms, Value};
 use rsmt2::parse::SmtParser;
 
 use super::sexpr::parts;
@@ -198,16 +198,24 @@ fn error_message(text: &str) -> String {
     inner.trim_end_matches(')').trim().trim_matches('"').trim().to_owned()
 }
 
-/// The values in the reply to `get-value`, in order: it is a list of pairs of a symbol, which does not matter here, and
-/// its value. rsmt2 is not asked, since it counts bytes where it means characters, and panics where a parenthesis is
-/// too many.
-pub(super) fn values(reply: &Reply) -> Option<Vec<Value>> {
+/// The values in the reply to `get-value`, in order, as they are written: it is a list of pairs of a symbol, which does
+/// not matter here, and its value. rsmt2 is not asked, since it counts bytes where it means characters, and panics
+/// where a parenthesis is too many.
+pub(super) fn values(reply: &Reply) -> Option<Vec<&str>> {
     let Reply::Expression(text) = reply else { return None };
     let pairs = parts(text)?.into_iter().map(|pair| match parts(pair)?.as_slice() {
-        [_, text] => value(text),
+        [_, text] => Some(*text),
         _ => None,
     });
     pairs.collect()
+}
+
+/// The value of that sort that is written so.
+pub(super) fn value_of_sort(terms: &Terms, sort: Sort, text: &str) -> Option<Value> {
+    match sort {
+        Sort::Enum(enumeration) => terms.constructor_called(enumeration, text),
+        sort => of_sort(value(text)?, sort),
+    }
 }
 
 /// The reason in the reply to `(get-info :reason-unknown)`.
@@ -219,7 +227,7 @@ pub(super) fn reason(reply: &Reply) -> Option<String> {
 }
 
 /// A value in any notation.
-fn value(text: &str) -> Option<Value> {
+pub(super) fn value(text: &str) -> Option<Value> {
     match text {
         "true" => return Some(Value::Bool(true)),
         "false" => return Some(Value::Bool(false)),
@@ -265,7 +273,7 @@ fn number(tokens: &[&str]) -> Option<Value> {
         ["(", "-", inner @ .., ")"] => match number(inner)? {
             Value::Int(i) => Some(Value::Int(i.checked_neg()?)),
             Value::Real(r) => Some(Value::Real(r.checked_mul(Rational::from(-1))?)),
-            Value::Bool(_) | Value::Bv { .. } => None,
+            _ => None,
         },
         ["(", "/", inner @ .., ")"] => {
             let split = if inner.first() == Some(&"(") { 4 } else { 1 };
@@ -281,12 +289,12 @@ fn real(value: Value) -> Option<Rational> {
     match value {
         Value::Int(i) => Rational::new(i, 1),
         Value::Real(r) => Some(r),
-        Value::Bool(_) | Value::Bv { .. } => None,
+        _ => None,
     }
 }
 
 /// The value as one of that sort: whole numbers are reals too.
-pub(super) fn of_sort(value: Value, sort: Sort) -> Option<Value> {
+fn of_sort(value: Value, sort: Sort) -> Option<Value> {
     match (value, sort) {
         (Value::Int(_), Sort::Real) => real(value).map(Value::Real),
         (Value::Real(r), Sort::Int) if r.denominator() == 1 => Some(Value::Int(r.numerator())),
@@ -303,9 +311,11 @@ pub fn understand_output(output: &[u8], piece: usize) -> Vec<String> {
     output.chunks(piece.max(1)).for_each(|piece| splitter.feed(piece));
     splitter.finish();
     let describe = |reply: Reply| {
-        let (meaning, reason, values) = (meaning(&reply), reason(&reply), values(&reply));
+        let (meaning, reason) = (meaning(&reply), reason(&reply));
+        let values: Option<Vec<Option<Value>>> =
+            values(&reply).map(|texts| texts.into_iter().map(value).collect());
         let all_of = |sort| -> Option<Vec<Value>> {
-            values.iter().flatten().map(|value| of_sort(*value, sort)).collect()
+            values.iter().flatten().map(|value| of_sort((*value)?, sort)).collect()
         };
         let (integers, reals) = (all_of(Sort::Int), all_of(Sort::Real));
         format!("{reply:?}: {meaning:?}, {reason:?}, {values:?}, {integers:?}, {reals:?}")
@@ -354,7 +364,10 @@ mod tests {
 
     #[test]
     fn reads_values() {
-        let of = |text: &str| split(text).first().and_then(values);
+        let of = |text: &str| -> Option<Vec<Value>> {
+            let replies = split(text);
+            values(replies.first()?)?.into_iter().map(value).collect()
+        };
         let bv = |value, width| Value::bv(value, width);
         assert_eq!(
             of("((x #b0101) (|a b| #x0F)\n (y (_ bv5 8)))"),
