@@ -172,7 +172,7 @@ impl Way {
         let tight = Limits { layer_states: 40, pairs: 12, swept: 30, residuals: 8, ..usual };
         let mut ways = Vec::new();
         for &quantifiers in quantifiers {
-            for states in [States::Onehot, States::Bitvec, States::Int] {
+            for states in [States::Onehot, States::Enum, States::Bitvec, States::Int, States::Real] {
                 ways.push(Way { quantifiers, states, limits: usual });
             }
             if *solver == Spec::Builtin {
@@ -219,9 +219,8 @@ impl Answers {
         for way in Way::all(solver, ways) {
             let finite = typed.systems.iter().all(hyperplan_problem::System::is_finite);
             // The embedded solver has no numbers, and what is not finite is nothing else.
-            if (way.states == States::Int && *solver == Spec::Builtin)
-                || (way.states != States::Int && !finite)
-            {
+            let numbers = matches!(way.states, States::Int | States::Real);
+            if numbers && *solver == Spec::Builtin || !numbers && !finite {
                 continue;
             }
             match way.answer(&typed, &typed.objectives[0], solver, self.second.clone()) {

@@ -69,7 +69,7 @@ fn graphs_are_decided_as_brute_force_does() {
         let context = || format!("seed {seed}\n{}\n{}", text(&random), graph(&random.system));
         assert_eq!(decide(&typed, objective, &Budget::default()), Ok(Some(expected)), "{}", context());
         for quantifiers in [Quantifiers::Auto, Quantifiers::Cegis, Quantifiers::Expand] {
-            for states in [States::Onehot, States::Bitvec] {
+            for states in [States::Onehot, States::Enum, States::Bitvec] {
                 let deadline = Deadline::after(Duration::from_secs(60));
                 let config = Config { quantifiers, states, deadline, ..Config::new(Spec::Builtin) };
                 let way = format!("--quantifiers {quantifiers} --states {states}");

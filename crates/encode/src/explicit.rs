@@ -1,14 +1,16 @@
-//! Paths whose states are enumerated (`--states onehot`): a Boolean for each state that can matter at a time, and
-//! one for each letter (action and outcome number) of a step.
+//! Paths whose states are enumerated: a condition for each state that can matter at a time, and one for each letter
+//! (action and outcome number) of a step. The symbols behind them are Booleans (`--states onehot`), or one of an
+//! enumeration for each time (`--states enum`).
 
+use crate::choice::{self, Alphabet, Choice, Place};
 use crate::graph::{Graph, Letter, StateIx};
 use crate::inputs::{Inputs, Move, Start};
+use crate::names::Names;
 use crate::reach::Layers;
 use crate::{Error, Stop};
-use hyperplan_problem::{ActionId, PathId, Problem, System, Value};
+use hyperplan_problem::{ActionId, PathId};
 use hyperplan_smt::{Model, Script, Sort, Term, Terms};
 use rustc_hash::FxHashMap;
-use std::borrow::Cow;
 use std::rc::Rc;
 
 /// A path whose every state and letter is known.
@@ -34,9 +36,21 @@ pub(crate) struct Layer {
     /// Sorted.
     pub(crate) states: Vec<StateIx>,
     pub(crate) terms: Vec<Term>,
+    /// See [`Choice::variable`].
+    variable: Option<Term>,
 }
 
 impl Layer {
+    /// States with conditions that exclude each other.
+    fn new(states: Vec<StateIx>, terms: Vec<Term>) -> Layer {
+        Layer { states, terms, variable: None }
+    }
+
+    /// The only state.
+    fn only(state: StateIx) -> Layer {
+        Layer::new(vec![state], vec![Term::TRUE])
+    }
+
     /// Whether the state is one of those for which `holds`.
     pub(crate) fn any(&self, terms: &mut Terms, mut holds: impl FnMut(StateIx) -> bool) -> Term {
         let (mut yes, mut no) = (Vec::new(), Vec::new());
@@ -65,10 +79,14 @@ pub(crate) struct Step {
     /// Empty where only the action is known.
     pub(crate) letters: Vec<(Letter, Term)>,
     pub(crate) actions: Vec<(ActionId, Term)>,
+    /// See [`Choice::variable`].
+    variable: Option<Term>,
 }
 
 impl Step {
-    fn new(terms: &mut Terms, graph: &Graph, letters: Vec<(Letter, Term)>) -> Step {
+    /// A choice among letters.
+    fn new(terms: &mut Terms, graph: &Graph, letters: Vec<Letter>, choice: Choice) -> Step {
+        let letters: Vec<(Letter, Term)> = letters.into_iter().zip(choice.terms).collect();
         let action = |letter: Letter| graph.letters[letter as usize].0;
         let actions = letters
             .chunk_by(|a, b| action(a.0) == action(b.0))
@@ -77,7 +95,12 @@ impl Step {
                 (action(same[0].0), terms.or(&any))
             })
             .collect();
-        Step { letters, actions }
+        Step { letters, actions, variable: choice.variable }
+    }
+
+    /// Where only the action is known.
+    fn of_actions(actions: Vec<(ActionId, Term)>) -> Step {
+        Step { letters: Vec::new(), actions, variable: None }
     }
 
     /// Whether the action is this one.
@@ -94,80 +117,6 @@ pub(crate) struct ExplicitPath {
     pub(crate) steps: Vec<Rc<Step>>,
 }
 
-/// Names the symbols of one path.
-pub(crate) struct Names<'a> {
-    pub(crate) problem: &'a Problem,
-    pub(crate) system: &'a System,
-    /// The path variable's name, with a number for copies.
-    pub(crate) path: String,
-}
-
-/// A name as a part of a symbol's. Names from graph files may be anything, dots and slashes included: a number then
-/// keeps the symbols of different things different.
-fn plain(name: &str, number: u32) -> Cow<'_, str> {
-    if name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_') {
-        Cow::Borrowed(name)
-    } else {
-        Cow::Owned(format!("#{number}"))
-    }
-}
-
-impl Names<'_> {
-    /// `p.at.3.4`: path p is where the first variable is 3 and the second 4.
-    fn state(&self, graph: &Graph, state: StateIx) -> String {
-        let mut name = format!("{}.at", self.path);
-        for (value, var) in graph.state(self.system, state).iter().zip(&self.system.vars) {
-            match (value, &var.ty) {
-                (Value::Enum(at), hyperplan_problem::Type::Enum(values)) => {
-                    name.push_str(&format!(".{}", plain(&values[*at as usize], *at)));
-                }
-                (Value::Bool(b), _) => name.push_str(&format!(".{b}")),
-                (Value::Int(i), _) => name.push_str(&format!(".{i}")),
-                (Value::Enum(at), _) => name.push_str(&format!(".{at}")),
-                (Value::Real(r), _) => name.push_str(&format!(".{r}")),
-            }
-        }
-        name
-    }
-
-    /// `q.may2.at.3.4`: some run of q may be there and owe what the residual 2 stands for.
-    pub(crate) fn pair(&self, graph: &Graph, state: StateIx, residual: u32) -> String {
-        let state = self.state(graph, state);
-        let place = state.strip_prefix(&self.path).unwrap_or(&state);
-        format!("{}.may{residual}{place}", self.path)
-    }
-
-    /// `p.up`, or `p.up/1` for the second outcome of `up`.
-    fn letter(&self, graph: &Graph, letter: Letter) -> String {
-        let (action, number) = graph.letters[letter as usize];
-        let action = plain(&self.problem.actions[action], action.0);
-        match number {
-            0 => format!("{}.{action}", self.path),
-            _ => format!("{}.{action}/{number}", self.path),
-        }
-    }
-}
-
-/// Exactly one of the terms is true; linear, by halves.
-pub(crate) fn exactly_one(terms: &mut Terms, all: &[Term]) -> Term {
-    let (any, at_most_one) = one_of(terms, all);
-    terms.and2(any, at_most_one)
-}
-
-fn one_of(terms: &mut Terms, all: &[Term]) -> (Term, Term) {
-    match all {
-        [] => (Term::FALSE, Term::TRUE),
-        [only] => (*only, Term::TRUE),
-        _ => {
-            let (left, right) = all.split_at(all.len() / 2);
-            let (any_left, one_left) = one_of(terms, left);
-            let (any_right, one_right) = one_of(terms, right);
-            let both = terms.and2(any_left, any_right);
-            (terms.or2(any_left, any_right), terms.and(&[one_left, one_right, !both]))
-        }
-    }
-}
-
 /// The letters that lead from one layer to the next, sorted.
 fn letters_between(graph: &Graph, layers: &Layers, time: usize) -> Vec<Letter> {
     let mut letters: Vec<Letter> = layers.at[time]
@@ -179,31 +128,6 @@ fn letters_between(graph: &Graph, layers: &Layers, time: usize) -> Vec<Letter> {
     letters.sort_unstable();
     letters.dedup();
     letters
-}
-
-/// Symbols for a set of alternatives; the only one there is needs none.
-fn symbols<T: Copy>(
-    terms: &mut Terms,
-    items: &[T],
-    bound: bool,
-    time: usize,
-    name: impl Fn(T) -> String,
-) -> Vec<Term> {
-    if items.len() == 1 {
-        return vec![Term::TRUE];
-    }
-    items
-        .iter()
-        .map(|&item| {
-            let stem = terms.stem(&name(item));
-            let time = Some(time as u32);
-            if bound {
-                terms.bound_symbol(stem, time, Sort::Bool)
-            } else {
-                terms.symbol(stem, time, Sort::Bool)
-            }
-        })
-        .collect()
 }
 
 impl ExplicitPath {
@@ -218,6 +142,7 @@ impl ExplicitPath {
         names: &Names<'_>,
         graph: &Rc<Graph>,
         layers: &Layers,
+        alphabet: &Alphabet,
         stop: Stop<'_>,
     ) -> Result<Self, Error> {
         script.section(format!("path {}", names.path));
@@ -226,21 +151,28 @@ impl ExplicitPath {
         }
         let mut path = ExplicitPath { graph: graph.clone(), layers: Vec::new(), steps: Vec::new() };
         for (time, states) in layers.at.iter().enumerate() {
-            let terms = symbols(&mut script.terms, states, false, time, |s| names.state(graph, s));
-            path.layers.push(Rc::new(Layer { states: states.clone(), terms }));
+            let place = Place { time, bound: false };
+            let choice = names.choose_state(&mut script.terms, graph, states, &place, alphabet);
+            if time == 0 {
+                let start = choice.is_made(&mut script.terms);
+                script.assert(start);
+            }
+            path.layers.push(Rc::new(Layer {
+                states: states.clone(),
+                terms: choice.terms,
+                variable: choice.variable,
+            }));
         }
-        let start = exactly_one(&mut script.terms, &path.layers[0].terms);
-        script.assert(start);
         for time in 0..path.layers.len() - 1 {
             if stop() {
                 return Err(Error::Interrupted);
             }
             let letters = letters_between(graph, layers, time);
-            let terms = symbols(&mut script.terms, &letters, false, time + 1, |l| names.letter(graph, l));
-            let one = exactly_one(&mut script.terms, &terms);
-            script.assert(one);
-            let letters = letters.into_iter().zip(terms).collect();
-            let step = Step::new(&mut script.terms, graph, letters);
+            let place = Place { time: time + 1, bound: false };
+            let choice = names.choose_letter(&mut script.terms, graph, &letters, &place, alphabet);
+            let made = choice.is_made(&mut script.terms);
+            script.assert(made);
+            let step = Step::new(&mut script.terms, graph, letters, choice);
             transition(script, graph, &path.layers[time], &step, &path.layers[time + 1]);
             path.steps.push(Rc::new(step));
         }
@@ -257,27 +189,29 @@ impl ExplicitPath {
         names: &Names<'_>,
         graph: &Rc<Graph>,
         layers: &Layers,
+        alphabet: &Alphabet,
         stop: Stop<'_>,
     ) -> Result<(Self, Vec<Term>, Term), Error> {
         let mut guards = Vec::new();
         let mut bound = Vec::new();
-        let mut choice = |terms: &mut Terms, variables: &[Term]| {
-            bound.extend(variables.iter().copied().filter(|t| !t.is_const()));
-            let one = exactly_one(terms, variables);
-            guards.push(one);
+        let mut bind = |terms: &mut Terms, choice: &Choice| {
+            bound.extend(choice::symbols(choice.variable, choice.terms.iter().copied()));
+            guards.push(choice.is_made(terms));
         };
-        let start = symbols(terms, &layers.at[0], true, 0, |s| names.state(graph, s));
-        choice(terms, &start);
+        let place = Place { time: 0, bound: true };
+        let start = names.choose_state(terms, graph, &layers.at[0], &place, alphabet);
+        bind(terms, &start);
         let mut path = ExplicitPath { graph: graph.clone(), layers: Vec::new(), steps: Vec::new() };
-        path.layers.push(Rc::new(Layer { states: layers.at[0].clone(), terms: start }));
+        path.layers.push(Rc::new(Layer::new(layers.at[0].clone(), start.terms)));
         for time in 0..layers.at.len() - 1 {
             if stop() {
                 return Err(Error::Interrupted);
             }
             let letters = letters_between(graph, layers, time);
-            let variables = symbols(terms, &letters, true, time + 1, |l| names.letter(graph, l));
-            choice(terms, &variables);
-            let step = Step::new(terms, graph, letters.into_iter().zip(variables).collect());
+            let place = Place { time: time + 1, bound: true };
+            let choice = names.choose_letter(terms, graph, &letters, &place, alphabet);
+            bind(terms, &choice);
+            let step = Step::new(terms, graph, letters, choice);
             let mut next = Vec::new();
             let layer = path.layers[time].clone();
             for (&state, &here) in layer.states.iter().zip(&layer.terms) {
@@ -300,9 +234,10 @@ impl ExplicitPath {
 
     /// A known path, as constants.
     pub(crate) fn fix(fixed: &FixedPath) -> Self {
-        let layer = |&state: &StateIx| Rc::new(Layer { states: vec![state], terms: vec![Term::TRUE] });
+        let layer = |&state: &StateIx| Rc::new(Layer::only(state));
         let step = |(&letter, &action): (&Letter, &ActionId)| {
-            Rc::new(Step { letters: vec![(letter, Term::TRUE)], actions: vec![(action, Term::TRUE)] })
+            let letters = vec![(letter, Term::TRUE)];
+            Rc::new(Step { letters, actions: vec![(action, Term::TRUE)], variable: None })
         };
         ExplicitPath {
             graph: fixed.graph.clone(),
@@ -313,18 +248,22 @@ impl ExplicitPath {
 
     /// The symbols that a model must give values to, so that [`ExplicitPath::decode`] can read the path.
     pub(crate) fn symbols(&self) -> Vec<Term> {
-        let letters = self.steps.iter().flat_map(|s| s.letters.iter().map(|l| l.1));
-        self.layers[0].terms.iter().copied().chain(letters).filter(|t| !t.is_const()).collect()
+        let start = &self.layers[0];
+        let mut symbols = choice::symbols(start.variable, start.terms.iter().copied());
+        for step in &self.steps {
+            symbols.extend(choice::symbols(step.variable, step.letters.iter().map(|l| l.1)));
+        }
+        symbols
     }
 
     /// The path that a model describes, by replaying its letters from its initial state; `None` if it is none.
     pub(crate) fn decode(&self, model: &Model) -> Option<FixedPath> {
         let first = &self.layers[0];
-        let start = first.terms.iter().position(|&t| t == Term::TRUE || model.is_true(t))?;
-        let mut states = vec![first.states[start]];
+        let starts = first.states.iter().copied().zip(first.terms.iter().copied());
+        let mut states = vec![choice::chosen(first.variable, starts, model)?];
         let mut letters = Vec::with_capacity(self.steps.len());
         for step in &self.steps {
-            let &(letter, _) = step.letters.iter().find(|l| l.1 == Term::TRUE || model.is_true(l.1))?;
+            let letter = choice::chosen(step.variable, step.letters.iter().copied(), model)?;
             states.push(self.graph.successor(*states.last()?, letter)?);
             letters.push(letter);
         }
@@ -361,7 +300,7 @@ fn transition(script: &mut Script, graph: &Graph, from: &Layer, step: &Step, to:
 fn gather(terms: &mut Terms, mut pairs: Vec<(StateIx, Term)>) -> Layer {
     pairs.retain(|p| p.1 != Term::FALSE);
     pairs.sort_unstable();
-    let mut layer = Layer { states: Vec::new(), terms: Vec::new() };
+    let mut layer = Layer::new(Vec::new(), Vec::new());
     for same in pairs.chunk_by(|a, b| a.0 == b.0) {
         let when: Vec<Term> = same.iter().map(|p| p.1).collect();
         layer.states.push(same[0].0);
@@ -407,9 +346,7 @@ impl Instances {
             Start::Same(other) => at(building.env, other).layers[0].clone(),
             Start::State(state) => only_start(building.env, graph, state).unwrap_or_else(|| {
                 let possible = building.layers.contains(0, state);
-                let (states, terms) =
-                    if possible { (vec![state], vec![Term::TRUE]) } else { (vec![], vec![]) };
-                Rc::new(Layer { states, terms })
+                Rc::new(if possible { Layer::only(state) } else { Layer::new(Vec::new(), Vec::new()) })
             }),
         };
         let mut path = ExplicitPath { graph: graph.clone(), layers: vec![first], steps: Vec::new() };
@@ -452,12 +389,12 @@ impl Building<'_, '_> {
             Move::SameAction(other, number) => {
                 let actions = at(self.env, other).steps[time].actions.clone();
                 let next = self.follow(here, &actions, time, |s, a| graph.outcome(s, a, number));
-                (next, Rc::new(Step { letters: Vec::new(), actions }))
+                (next, Rc::new(Step::of_actions(actions)))
             }
             Move::Act(action, number) => {
                 let actions = vec![(action, Term::TRUE)];
                 let next = self.follow(here, &actions, time, |s, a| graph.outcome(s, a, number));
-                (next, Rc::new(Step { letters: Vec::new(), actions }))
+                (next, Rc::new(Step::of_actions(actions)))
             }
         }
     }
@@ -481,7 +418,7 @@ impl Building<'_, '_> {
         ways.sort_unstable();
         let terms: Vec<Term> = choices.iter().map(|c| c.1).collect();
         let certain = terms == [Term::TRUE];
-        let mut layer = Layer { states: Vec::new(), terms: Vec::new() };
+        let mut layer = Layer::new(Vec::new(), Vec::new());
         for to in ways.chunk_by(|a, b| a.0 == b.0) {
             let term = match to {
                 [(_, at, when)] if certain || *when == Term::TRUE => {

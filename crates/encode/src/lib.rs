@@ -8,6 +8,7 @@
 //! Nothing here prints or runs a solver.
 
 mod atom;
+mod choice;
 mod eval;
 mod expand;
 mod explicit;
@@ -18,9 +19,11 @@ mod graph;
 mod inputs;
 mod inspect;
 mod moves;
+mod names;
 mod path;
 mod query;
 mod reach;
+mod real;
 mod realize;
 mod residual;
 mod sweep;
@@ -56,8 +59,26 @@ pub enum States {
     Onehot,
     /// A bit-vector for each variable.
     Bitvec,
-    /// An integer or real for each variable.
+    /// An integer for each variable, a real for each that is one.
     Int,
+    /// A value of a datatype, one for each state of the system, at each time.
+    Enum,
+    /// A real for each variable.
+    Real,
+}
+
+impl States {
+    /// Whether the states that can matter are told apart one by one.
+    #[must_use]
+    pub fn is_enumerated(self) -> bool {
+        matches!(self, States::Onehot | States::Enum)
+    }
+
+    /// Whether variables are integers or reals.
+    #[must_use]
+    pub fn is_arithmetic(self) -> bool {
+        matches!(self, States::Int | States::Real)
+    }
 }
 
 /// Budgets of the encoding.
@@ -77,6 +98,8 @@ pub struct Limits {
     pub residuals: usize,
     /// Cases of one universally quantified path.
     pub cases: usize,
+    /// States of a system that become the constructors of a datatype.
+    pub constructors: usize,
     /// Whether what a goal asks for says which states can matter. Without, all that can be reached do: answers are
     /// the same, which tests rely on.
     pub prune: bool,
@@ -92,6 +115,7 @@ impl Default for Limits {
             swept: 3_000_000,
             residuals: 20_000,
             cases: 4096,
+            constructors: 65_536,
             prune: true,
         }
     }
@@ -140,6 +164,12 @@ pub enum Error {
     Unbounded {
         /// The system.
         system: String,
+    },
+    /// A system is about integers in a way that reals cannot express.
+    #[error("{what}, which reals cannot express; use --states int")]
+    NotReal {
+        /// What it has.
+        what: String,
     },
 }
 
@@ -204,13 +234,17 @@ impl<'a> Encoder<'a> {
                 continue;
             }
             let system = &problem.systems[path.system];
-            if !system.is_finite() && wish.is_some_and(|wish| wish != States::Int) {
+            if !system.is_finite() && wish.is_some_and(|wish| !wish.is_arithmetic()) {
                 return Err(Error::Unbounded { system: system.name.clone() });
             }
             finite &= system.is_finite();
             let graph = graphs.explore(system, limits.states);
-            if graph.is_none() && wish == Some(States::Onehot) {
+            if graph.is_none() && wish.is_some_and(States::is_enumerated) {
                 return Err(Error::NotEnumerable { system: system.name.clone() });
+            }
+            if wish == Some(States::Enum) && graph.as_ref().is_some_and(|g| g.len() > limits.constructors) {
+                let what = format!("the states of system {}, each a constructor of a datatype", system.name);
+                return Err(Error::TooLarge { what, limit: limits.constructors });
             }
             enumerable &= graph.is_some();
             models[path.system] = Some(Model { graph, moves: None, live: None });
@@ -221,7 +255,10 @@ impl<'a> Encoder<'a> {
             (true, false) => States::Bitvec,
         });
         let mut encoder = Encoder { problem, objective, states, limits, horizons, models, stop };
-        if states != States::Onehot {
+        if states == States::Real {
+            real::demand(problem, objective)?;
+        }
+        if !states.is_enumerated() {
             encoder.prepare_symbolic()?;
         }
         Ok(encoder)

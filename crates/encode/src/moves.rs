@@ -3,7 +3,7 @@
 use crate::eval::{bounds, code, decode, holds_in, value_in};
 use crate::value::{Leaves, Val, compare, constant, equal, member_of, merge, same, translate};
 use crate::{Error, States};
-use hyperplan_problem::{ActionId, Comparison, Expr, Leaf, State, System, Update, Value, VarId};
+use hyperplan_problem::{ActionId, Comparison, Expr, Leaf, State, System, Type, Update, Value, VarId};
 use hyperplan_smt::{Term, Terms};
 use rustc_hash::FxHashMap;
 use std::rc::Rc;
@@ -404,7 +404,7 @@ fn combinations(
             Update::OneOf(es) => es.iter().cloned().map(NewValue::Is).collect(),
             Update::Within(lo, hi) => match members(lo, hi, bounds(&system.vars[*var].ty)) {
                 Some(values) => values,
-                None if states == States::Int => {
+                None if open(&system.vars[*var].ty, states) => {
                     vec![NewValue::Between { lo: lo.clone(), hi: hi.clone() }]
                 }
                 None => return Err(too_many(system)),
@@ -425,6 +425,11 @@ fn combinations(
             .collect();
     }
     Ok(all)
+}
+
+/// Whether an update may leave a value of that type open: a solver for integers and reals then finds it.
+fn open(ty: &Type, states: States) -> bool {
+    states == States::Int || states == States::Real && *ty == Type::Real
 }
 
 /// The values that may lie between two ends, of a variable with that range; `None` where there are too many.

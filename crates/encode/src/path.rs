@@ -6,7 +6,7 @@ use crate::graph::StateIx;
 use crate::inputs::{Inputs, Move, Start};
 use crate::moves::Moves;
 use crate::symbolic::{FixedRows, SymbolicPath};
-use crate::{Encoder, Row, States};
+use crate::{Encoder, Row};
 use hyperplan_problem::{PathId, State, System, Trace};
 use hyperplan_smt::Term;
 use std::rc::Rc;
@@ -82,7 +82,7 @@ pub(crate) fn known(encoder: &Encoder<'_>, trace: &Trace) -> Option<Known> {
     let system = encoder.system(trace.path);
     let steps = encoder.horizon(trace.path) as usize;
     let actions = trace.actions.get(..steps)?.to_vec();
-    if let Some(graph) = encoder.graph(trace.path).filter(|_| encoder.states == States::Onehot) {
+    if let Some(graph) = encoder.graph(trace.path).filter(|_| encoder.states.is_enumerated()) {
         let row = |state: &State| -> Row { state.iter().map(|&v| code(v)).collect() };
         let rows: Vec<Row> = trace.states.iter().map(row).collect();
         let first = *graph.initial.iter().find(|&&s| graph.row(s) == &*rows[0])?;

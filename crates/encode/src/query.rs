@@ -1,21 +1,24 @@
 //! One script under construction, and the table that leads back from its values to paths.
 
 use crate::atom::PathAtoms;
-use crate::explicit::{Building, ExplicitPath, FixedPath, Instances, Names};
+use crate::choice::Alphabet;
+use crate::explicit::{Building, ExplicitPath, FixedPath, Instances};
 use crate::game::Game;
 use crate::goal::Goal;
 use crate::inputs::{Move, Start};
+use crate::names::Names;
 use crate::path::{Instance, Known, Path, Shape};
 use crate::reach::{self, Layers, Question};
 use crate::sweep::{Sweep, sweep};
 use crate::symbolic::{Builder, SymbolicPath};
 use crate::unroll::Unroller;
-use crate::{Encoder, Error, Graph, States};
-use hyperplan_problem::{PathId, Quantifier};
-use hyperplan_smt::{Model, Script, Term};
+use crate::{Encoder, Error, Graph, Model as SystemModel, States};
+use hyperplan_problem::{PathId, Quantifier, System, SystemId};
+use hyperplan_smt::{Model, Script, Term, Terms};
 use rustc_hash::FxHashMap;
 use std::cell::Cell;
 use std::rc::Rc;
+use typed_index_collections::TiVec;
 
 /// The paths over which the formula is unrolled, by path variable.
 pub type Env = Vec<Option<Rc<Path>>>;
@@ -49,8 +52,25 @@ pub struct Query<'e, 'a> {
     /// Whether runs have been lost that the goal does not exclude.
     lossy: Cell<bool>,
     instances: Instances,
+    /// How states and letters are written, by system, where they are enumerated.
+    alphabets: TiVec<SystemId, Alphabet>,
     /// How many copies of each path variable there are, for names.
     copies: FxHashMap<PathId, u32>,
+}
+
+/// How the states and letters of each system are written.
+fn alphabets(encoder: &Encoder<'_>, terms: &mut Terms) -> TiVec<SystemId, Alphabet> {
+    let alphabet = |(system, model): (&System, &Option<SystemModel>)| match model
+        .as_ref()
+        .and_then(|m| m.graph.as_deref())
+    {
+        Some(graph) if encoder.states == States::Enum => {
+            let names = Names { problem: encoder.problem, system, path: system.name.clone() };
+            Alphabet::enumerations(terms, &names, graph)
+        }
+        _ => Alphabet::ONEHOT,
+    };
+    encoder.problem.systems.iter().zip(&encoder.models).map(alphabet).collect()
 }
 
 pub(crate) fn names<'a>(encoder: &Encoder<'a>, path: PathId, copy: u32) -> Names<'a> {
@@ -72,9 +92,11 @@ impl<'e, 'a> Query<'e, 'a> {
                 _ => None,
             })
             .collect();
+        let mut script = Script::new();
+        let alphabets = alphabets(encoder, &mut script.terms);
         Query {
             encoder,
-            script: Script::new(),
+            script,
             fixed,
             layers: FxHashMap::default(),
             declared: FxHashMap::default(),
@@ -83,6 +105,7 @@ impl<'e, 'a> Query<'e, 'a> {
             least: 0,
             lossy: Cell::new(false),
             instances: Instances::default(),
+            alphabets,
             copies: FxHashMap::default(),
         }
     }
@@ -157,7 +180,7 @@ impl<'e, 'a> Query<'e, 'a> {
     /// # Errors
     /// [`Error::TooLarge`] where too much can matter.
     pub fn explore_block(&mut self, block: &[PathId], goal: &Goal) -> Result<(), Error> {
-        if self.encoder.states != States::Onehot || !self.encoder.limits.prune {
+        if !self.encoder.states.is_enumerated() || !self.encoder.limits.prune {
             return Ok(());
         }
         if self.narrowing.slack.is_some() && block.len() > 1 {
@@ -219,7 +242,7 @@ impl<'e, 'a> Query<'e, 'a> {
     /// # Errors
     /// [`Error::TooLarge`] where too much can matter.
     pub fn is_hopeless(&mut self, block: &[PathId], goal: &Goal) -> Result<bool, Error> {
-        if self.encoder.states != States::Onehot {
+        if !self.encoder.states.is_enumerated() {
             return Ok(false);
         }
         self.explore_block(block, goal)?;
@@ -294,18 +317,20 @@ impl<'e, 'a> Query<'e, 'a> {
     pub fn declare(&mut self, path: PathId, goal: &Goal) -> Result<Rc<Path>, Error> {
         let names = self.names(path);
         let shape = match self.encoder.states {
-            States::Onehot => {
+            States::Onehot | States::Enum => {
                 let layers = self.layers(path, goal)?;
                 self.declared.entry(path).or_insert_with(|| layers.clone());
                 let graph = explicit_graph(self.encoder, path);
                 let script = &mut self.script;
-                let declared = ExplicitPath::declare(script, &names, graph, &layers, self.encoder.stop)?;
+                let alphabet = &self.alphabets[self.encoder.objective.paths[path].system];
+                let stop = self.encoder.stop;
+                let declared = ExplicitPath::declare(script, &names, graph, &layers, alphabet, stop)?;
                 if let Some(game) = self.game.as_ref().filter(|game| game.paths[0] == path) {
                     close_moves(script, game, &declared);
                 }
                 Shape::Explicit(declared)
             }
-            States::Bitvec | States::Int => {
+            States::Bitvec | States::Int | States::Real => {
                 let declared = self.builder(path, &names).declare(&mut self.script);
                 Shape::Symbolic(declared)
             }
@@ -320,15 +345,16 @@ impl<'e, 'a> Query<'e, 'a> {
     pub fn bind(&mut self, path: PathId, goal: &Goal) -> Result<(Rc<Path>, Vec<Term>, Term), Error> {
         let names = self.names(path);
         let (shape, bound, guard) = match self.encoder.states {
-            States::Onehot => {
+            States::Onehot | States::Enum => {
                 let layers = self.layers(path, goal)?;
                 let graph = explicit_graph(self.encoder, path);
                 let terms = &mut self.script.terms;
+                let alphabet = &self.alphabets[self.encoder.objective.paths[path].system];
                 let (path, bound, guard) =
-                    ExplicitPath::bind(terms, &names, graph, &layers, self.encoder.stop)?;
+                    ExplicitPath::bind(terms, &names, graph, &layers, alphabet, self.encoder.stop)?;
                 (Shape::Explicit(path), bound, guard)
             }
-            States::Bitvec | States::Int => {
+            States::Bitvec | States::Int | States::Real => {
                 let builder = self.builder(path, &names);
                 let (path, bound, guard) = builder.bind(&mut self.script.terms);
                 (Shape::Symbolic(path), bound, guard)
@@ -459,7 +485,7 @@ impl<'e, 'a> Query<'e, 'a> {
     /// # Errors
     /// [`Error::TooLarge`] where too much can matter.
     pub fn sweep(&mut self, path: PathId, env: &Env, goal: &Goal) -> Result<bool, Error> {
-        if self.encoder.states != States::Onehot {
+        if !self.encoder.states.is_enumerated() {
             return Ok(false);
         }
         let names = self.names(path);

@@ -15,10 +15,11 @@
 use crate::Encoder;
 use crate::atom::{Env, OnRun, PathAtoms};
 use crate::eval::eval;
-use crate::explicit::{ExplicitPath, Names};
+use crate::explicit::ExplicitPath;
 use crate::game::{Game, Pair};
 use crate::goal::Goal;
 use crate::graph::{Graph, StateIx};
+use crate::names::Names;
 use crate::reach::Layers;
 use crate::residual::{FALSE, MAX_ATOMS, Now, Residual, Residuals, TRUE};
 use crate::value::translate;

@@ -1,15 +1,18 @@
-//! Paths whose states are not enumerated (`--states bitvec` and `int`): each variable is a term, each step a choice
+//! Paths whose states are not enumerated (`--states bitvec`, `int` and `real`): each variable is a term, each step a choice
 //! among the system's [moves](crate::moves), and of values for what an update leaves open.
 
 use crate::Row;
 use crate::States;
 use crate::eval::bounds;
-use crate::explicit::Names;
 use crate::inputs::{Inputs, Move, Start};
 use crate::moves::{InState, Moves, within};
-use crate::value::{Val, bits_sort, choose, equal, known, member_of, number_sort, same, translate, width};
+use crate::names::Names;
+use crate::value::{
+    Val, bits_sort, choose, equal, known, member_of, number_sort, real_sort, same, translate, width,
+};
 use hyperplan_problem::{ActionId, PathId, Rational, State, System, Type, Value, VarId};
 use hyperplan_smt::{self as smt, Model, Script, Sort, Term, Terms};
+use std::ops::RangeInclusive;
 use std::rc::Rc;
 
 /// A path whose every state is known.
@@ -198,7 +201,8 @@ impl Builder<'_> {
         let stem = terms.stem(&format!("{}.{}", self.names.path, var.name));
         let sort = match self.moves.states {
             States::Int => number_sort(&var.ty),
-            States::Onehot | States::Bitvec => bits_sort(&var.ty),
+            States::Real => real_sort(&var.ty),
+            States::Bitvec | States::Onehot | States::Enum => bits_sort(&var.ty),
         };
         let term = symbol(terms, stem, time, sort, bound);
         match (sort, bounds(&var.ty)) {
@@ -221,8 +225,8 @@ impl Builder<'_> {
     fn choice(&self, terms: &mut Terms, time: u32, bound: bool) -> SymbolicStep {
         let (moves, symbols) = match (self.moves.all.len(), self.moves.states) {
             (0 | 1, _) => (vec![Term::TRUE; self.moves.all.len()], Vec::new()),
-            (_, States::Int) => self.first_true(terms, time, bound),
-            (_, States::Onehot | States::Bitvec) => self.numbered(terms, time, bound),
+            (_, states) if states.is_arithmetic() => self.first_true(terms, time, bound),
+            _ => self.numbered(terms, time, bound),
         };
         let mut actions: Vec<(ActionId, Vec<Term>)> = Vec::new();
         for (a_move, &term) in self.moves.all.iter().zip(&moves) {
@@ -334,6 +338,7 @@ fn in_range(terms: &mut Terms, value: &Val, ty: &Type) -> Term {
     let Some((lo, hi)) = bounds(ty) else { return Term::TRUE };
     let term = match value {
         Val::Bits { term, .. } => *term,
+        Val::Number(term) if terms.sort(*term) == Sort::Real => return one_of(terms, value, lo..=hi),
         Val::Number(_) => return within(terms, value.clone(), Some((lo, hi))),
         Val::Bool(_) | Val::Cases(_) => return Term::TRUE,
     };
@@ -349,6 +354,12 @@ fn in_range(terms: &mut Terms, value: &Val, ty: &Type) -> Term {
         parts.push(terms.bv_sle(term, bound));
     }
     terms.and(&parts)
+}
+
+/// Whether a real is one of some integers.
+fn one_of(terms: &mut Terms, value: &Val, range: RangeInclusive<i64>) -> Term {
+    let each: Vec<Term> = range.map(|code| equal(terms, value, code)).collect();
+    terms.or(&each)
 }
 
 /// A new value at its variable's width and bounds: a move that leaves them is not enabled.
@@ -420,7 +431,10 @@ impl SymbolicStep {
 
 /// What a variable of that type is by a term's value; `None` where it does not fit.
 fn value_of(ty: &Type, value: smt::Value) -> Option<Value> {
-    let integer = || i64::try_from(value.as_signed()?).ok();
+    let integer = || match value {
+        smt::Value::Real(r) if r.denominator() == 1 => i64::try_from(r.numerator()).ok(),
+        value => i64::try_from(value.as_signed()?).ok(),
+    };
     match (ty, value) {
         (Type::Bool, value) => value.as_bool().map(Value::Bool),
         (Type::Real, smt::Value::Real(r)) => {

@@ -60,6 +60,14 @@ pub(crate) fn number_sort(ty: &Type) -> Sort {
     }
 }
 
+/// The sort of a variable as a real.
+pub(crate) fn real_sort(ty: &Type) -> Sort {
+    match ty {
+        Type::Bool => Sort::Bool,
+        Type::Range { .. } | Type::Enum(_) | Type::Int | Type::Real => Sort::Real,
+    }
+}
+
 /// A fraction as the terms have it.
 fn rational(value: hyperplan_problem::Rational) -> Rational {
     let (numerator, denominator) = (i128::from(*value.numer()), i128::from(*value.denom()));
@@ -110,14 +118,19 @@ impl Val {
         }
     }
 
-    /// As a term of sort Int or Real.
-    fn number(&self, terms: &mut Terms) -> Term {
+    /// As a term of that sort, Int or Real.
+    fn number(&self, terms: &mut Terms, sort: Sort) -> Term {
         match self {
+            Val::Number(term) if sort == Sort::Real && terms.sort(*term) == Sort::Int => terms.to_real(*term),
             Val::Number(term) => *term,
             Val::Cases(cases) => {
-                let mut term = terms.int(cases.last().map_or(0, |c| c.0));
+                let constant = |terms: &mut Terms, value: i64| match sort {
+                    Sort::Real => terms.real(Rational::from(value)),
+                    _ => terms.int(value),
+                };
+                let mut term = constant(terms, cases.last().map_or(0, |c| c.0));
                 for &(value, when) in cases.iter().rev().skip(1) {
-                    let this = terms.int(value);
+                    let this = constant(terms, value);
                     term = terms.ite(when, this, term);
                 }
                 term
@@ -126,9 +139,16 @@ impl Val {
         }
     }
 
-    /// Whether it is, or has to be combined with, a term of sort Int or Real.
-    fn is_number(&self) -> bool {
-        matches!(self, Val::Number(_))
+    /// The sort at which it can be combined with another value; `None` where neither is an integer or real.
+    fn number_sort_with(&self, terms: &Terms, other: &Val) -> Option<Sort> {
+        let sort = |value: &Val| match value {
+            Val::Number(term) => Some(terms.sort(*term)),
+            _ => None,
+        };
+        match (sort(self), sort(other)) {
+            (Some(Sort::Real), _) | (_, Some(Sort::Real)) => Some(Sort::Real),
+            (a, b) => a.or(b),
+        }
     }
 
     /// As a signed bit-vector term of that width, which must hold its values.
@@ -178,13 +198,10 @@ pub(crate) fn translate<L>(terms: &mut Terms, expr: &Expr<L>, leaves: &mut impl 
             multiply(terms, *c, a)
         }
         Expr::Scale(c, a) => {
-            let a = translate(terms, a, leaves).number(terms);
+            let a = translate(terms, a, leaves).number(terms, Sort::Real);
             Val::Number(terms.real_mul(rational(*c), a))
         }
-        Expr::ToReal(a) => {
-            let a = translate(terms, a, leaves).number(terms);
-            Val::Number(terms.to_real(a))
-        }
+        Expr::ToReal(a) => Val::Number(translate(terms, a, leaves).number(terms, Sort::Real)),
         Expr::Div(a, c) => {
             let a = translate(terms, a, leaves);
             if let Val::Number(a) = a {
@@ -241,11 +258,11 @@ pub(crate) fn choose(terms: &mut Terms, c: Term, a: Val, b: Val) -> Val {
             }
             merge(terms, all.into_iter())
         }
-        (a, b) if a.is_number() || b.is_number() => {
-            let (a, b) = (a.number(terms), b.number(terms));
-            Val::Number(terms.ite(c, a, b))
-        }
         (a, b) => {
+            if let Some(sort) = a.number_sort_with(terms, &b) {
+                let (a, b) = (a.number(terms, sort), b.number(terms, sort));
+                return Val::Number(terms.ite(c, a, b));
+            }
             let ((a, alo, ahi), (b, blo, bhi)) = (a.bits(terms), b.bits(terms));
             let (lo, hi) = (alo.min(blo), ahi.max(bhi));
             let w = width(lo, hi);
@@ -267,9 +284,9 @@ pub(crate) fn merge(terms: &mut Terms, cases: impl Iterator<Item = (i64, Term)>)
 }
 
 fn add(terms: &mut Terms, a: Val, b: Val) -> Val {
-    if a.is_number() || b.is_number() {
-        let (a, b) = (a.number(terms), b.number(terms));
-        let real = terms.sort(a) == Sort::Real;
+    if let Some(sort) = a.number_sort_with(terms, &b) {
+        let (a, b) = (a.number(terms, sort), b.number(terms, sort));
+        let real = sort == Sort::Real;
         return Val::Number(if real { terms.real_add(&[a, b]) } else { terms.int_add(&[a, b]) });
     }
     match (a.cases(), b.cases()) {
@@ -296,6 +313,7 @@ fn add(terms: &mut Terms, a: Val, b: Val) -> Val {
 fn multiply(terms: &mut Terms, c: i64, a: Val) -> Val {
     match a {
         Val::Cases(cases) => merge(terms, cases.into_iter().map(|(v, when)| (c * v, when))),
+        Val::Number(a) if terms.sort(a) == Sort::Real => Val::Number(terms.real_mul(Rational::from(c), a)),
         Val::Number(a) => Val::Number(terms.int_mul(c, a)),
         bits => {
             let (a, alo, ahi) = bits.bits(terms);
@@ -337,9 +355,9 @@ fn pointwise(terms: &mut Terms, a: Val, value: impl Fn(i64) -> i64, next: impl F
 
 /// A comparison of two numbers.
 pub(crate) fn compare(terms: &mut Terms, op: Comparison, a: Val, b: Val) -> Term {
-    if a.is_number() || b.is_number() {
-        let (a, b) = (a.number(terms), b.number(terms));
-        return match (op, terms.sort(a) == Sort::Real) {
+    if let Some(sort) = a.number_sort_with(terms, &b) {
+        let (a, b) = (a.number(terms, sort), b.number(terms, sort));
+        return match (op, sort == Sort::Real) {
             (Comparison::Eq, _) => terms.eq(a, b),
             (Comparison::Lt, true) => terms.real_lt(a, b),
             (Comparison::Le, true) => terms.real_le(a, b),

@@ -93,11 +93,12 @@ pub(crate) enum States {
     Onehot,
     /// A bit-vector for each variable
     Bitvec,
-    /// An integer or real for each variable
+    /// An integer for each variable; a real for each that is one
     Int,
-    /// Not supported yet
-    #[value(hide = true)]
+    /// A value of a datatype for each state
     Enum,
+    /// A real for each variable
+    Real,
 }
 
 /// How a query is built.

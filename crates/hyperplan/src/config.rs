@@ -37,7 +37,7 @@ impl Solve {
             rivals,
             cross_check: args.cross_check.as_deref().map(self::solver).transpose()?,
             quantifiers: quantifiers(args.encoding.quantifiers),
-            states: states(args.encoding.states)?,
+            states: states(args.encoding.states),
             deadline: deadline(args.encoding.timeout)?,
             verify: !args.no_verify,
             seed: args.seed,
@@ -77,15 +77,14 @@ pub(crate) fn quantifiers(typed: args::Quantifiers) -> Quantifiers {
     }
 }
 
-pub(crate) fn states(typed: args::States) -> Outcome<States> {
+pub(crate) fn states(typed: args::States) -> States {
     match typed {
-        args::States::Auto => Ok(States::Auto),
-        args::States::Onehot => Ok(States::Onehot),
-        args::States::Bitvec => Ok(States::Bitvec),
-        args::States::Int => Ok(States::Int),
-        args::States::Enum => {
-            Err(Failure::input("--states enum is not supported yet; use onehot, bitvec or int"))
-        }
+        args::States::Auto => States::Auto,
+        args::States::Onehot => States::Onehot,
+        args::States::Bitvec => States::Bitvec,
+        args::States::Int => States::Int,
+        args::States::Enum => States::Enum,
+        args::States::Real => States::Real,
     }
 }
 

@@ -100,7 +100,7 @@ fn the_trap_of_a_longer_horizon() {
 #[test]
 fn every_quantifier_mode_and_representation() {
     for (objective, quantifiers) in [("isr", "auto"), ("isr", "cegis"), ("iso", "expand")] {
-        for states in ["auto", "onehot", "bitvec"] {
+        for states in ["auto", "onehot", "bitvec", "enum"] {
             let options = ["--objective", objective, "--quantifiers", quantifiers, "--states", states];
             let run = hyperplan(&[&["solve", "rooms.hp", "--quiet"], &options[..]].concat());
             let expected = format!("{objective}: realizable\n");
@@ -113,12 +113,14 @@ fn every_quantifier_mode_and_representation() {
 fn what_is_not_supported_is_bad_usage() {
     let unbounded = ["pass/reals.hp", "--objective", "brake"];
     let numbers = ["rooms.hp", "--objective", "sp", "--states", "int"];
-    let datatypes = ["rooms.hp", "--objective", "sp", "--states", "enum"];
+    let reals = ["rooms.hp", "--objective", "sp", "--states", "real"];
+    let unbounded_reals = ["pass/unbounded-integers.hp", "--objective", "detour", "--states", "real"];
     let bits = ["pass/reals.hp", "--objective", "brake", "--states", "bitvec"];
     for (arguments, message) in [
         (&unbounded[..], "such as --solver z3, cvc5 or yices"),
         (&numbers, "such as --solver z3, cvc5 or yices"),
-        (&datatypes, "not supported yet"),
+        (&reals, "--states real takes a solver for integers and reals"),
+        (&unbounded_reals, "which reals cannot express; use --states int"),
         (&bits, "takes --states int"),
     ] {
         let run = hyperplan(&[&["solve"], arguments].concat());

@@ -40,8 +40,12 @@ pub enum States {
     Onehot,
     /// A bit-vector for each variable.
     Bitvec,
-    /// An integer or real for each variable.
+    /// An integer for each variable, a real for each that is one.
     Int,
+    /// A value of a datatype at each time.
+    Enum,
+    /// A real for each variable.
+    Real,
 }
 
 impl States {
@@ -51,6 +55,8 @@ impl States {
             States::Onehot => Some(encode::States::Onehot),
             States::Bitvec => Some(encode::States::Bitvec),
             States::Int => Some(encode::States::Int),
+            States::Enum => Some(encode::States::Enum),
+            States::Real => Some(encode::States::Real),
         }
     }
 }
@@ -61,6 +67,8 @@ impl From<encode::States> for States {
             encode::States::Onehot => States::Onehot,
             encode::States::Bitvec => States::Bitvec,
             encode::States::Int => States::Int,
+            encode::States::Enum => States::Enum,
+            encode::States::Real => States::Real,
         }
     }
 }
@@ -72,6 +80,8 @@ impl fmt::Display for States {
             States::Onehot => "onehot",
             States::Bitvec => "bitvec",
             States::Int => "int",
+            States::Enum => "enum",
+            States::Real => "real",
         })
     }
 }

@@ -101,6 +101,8 @@ fn source(encoder: &Encoder<'_>, exists: bool) -> String {
         encode::States::Onehot => "one Boolean for each time and state",
         encode::States::Bitvec => "one bit-vector for each time and variable",
         encode::States::Int => "one number for each time and variable",
+        encode::States::Enum => "one value of a datatype for each time",
+        encode::States::Real => "one real for each time and variable",
     };
     let meaning = if exists { "a strategy" } else { "a counterexample" };
     let horizons: Vec<String> = objective

@@ -43,7 +43,9 @@ impl Evidence {
         for symbol in symbols {
             if let Some(value) = model.get(symbol) {
                 let name = term_text(&script.terms, symbol);
-                text.extend_from_slice(format!("; {name} = {}\n", value_text(&script.terms, value)).as_bytes());
+                text.extend_from_slice(
+                    format!("; {name} = {}\n", value_text(&script.terms, value)).as_bytes(),
+                );
             }
         }
         Evidence { solver: solver.clone(), text }

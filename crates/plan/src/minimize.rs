@@ -16,7 +16,7 @@
 use crate::config::{Config, Error, Outcome, Seconds, Verdict};
 use crate::lasting::{conjuncts, lasting};
 use crate::solve::{SLACKS, solve_sharing};
-use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Narrowing, Query, States};
+use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Narrowing, Query};
 use hyperplan_problem::{FormulaId, Node, Objective, Problem, Quantifier};
 use hyperplan_solver::Size;
 use std::ops::RangeInclusive;
@@ -288,7 +288,7 @@ fn hopeless(
     let stop = || config.deadline.passed();
     let encoder = Encoder::sharing(problem, objective, config.states.wish(), config.limits, &stop, graphs)?;
     let exists = objective.paths.first().is_some_and(|path| path.quantifier == Quantifier::Exists);
-    if !exists || encoder.states != States::Onehot {
+    if !exists || !encoder.states.is_enumerated() {
         return Ok(false);
     }
     if !objective.paths.keys().all(|path| encoder.has_path(path) == Some(true)) {

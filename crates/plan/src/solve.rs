@@ -62,7 +62,7 @@ fn attempt(
     let stop = || config.deadline.passed();
     let (wish, limits) = (config.states.wish(), config.limits);
     let encoder = Encoder::sharing(problem, objective, wish, limits, &stop, graphs)?;
-    if encoder.states == encode::States::Int && config.solver == Spec::Builtin {
+    if encoder.states.is_arithmetic() && config.solver == Spec::Builtin {
         return Err(needs_arithmetic(&encoder));
     }
     let mut oracle = Oracle::new(config);
@@ -113,7 +113,7 @@ fn needs_arithmetic(encoder: &Encoder<'_>) -> Error {
     let systems = encoder.objective.paths.iter().map(|path| &encoder.problem.systems[path.system]);
     let what = match systems.into_iter().find(|system| !system.is_finite()) {
         Some(system) => format!("system {} has variables without bounds, which", system.name),
-        None => "--states int".to_owned(),
+        None => format!("--states {}", States::from(encoder.states)),
     };
     Error::Unsupported(format!(
         "{what} takes a solver for integers and reals, such as --solver z3, cvc5 or yices; the builtin solver has none"
@@ -214,7 +214,7 @@ fn reason(encoder: &Encoder<'_>, blocks: &[Vec<PathId>], swept: bool) -> &'stati
     match blocks {
         _ if swept => "all runs of the other player's only path can be followed at once",
         [_, last] if last.len() > 1 => "the other player has several paths",
-        [_, _] if encoder.states != encode::States::Onehot => "states are not written one by one",
+        [_, _] if !encoder.states.is_enumerated() => "states are not written one by one",
         [_, _] => "there are too many runs of the other player's path to follow all at once",
         _ => "the quantifiers alternate more than once",
     }
@@ -336,8 +336,8 @@ fn defeated(encoder: &Encoder<'_>, config: &Config, strategy: &Strategy) -> Resu
         return Ok(true);
     }
     let solver = match encoder.states {
-        encode::States::Int => config.solver.clone(),
-        encode::States::Onehot | encode::States::Bitvec => Spec::Builtin,
+        states if states.is_arithmetic() => config.solver.clone(),
+        _ => Spec::Builtin,
     };
     let own = Config { solver, queries: None, ..config.clone() };
     let formula = &objective.formula;

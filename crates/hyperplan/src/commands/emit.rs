@@ -14,7 +14,7 @@ pub(crate) fn run(args: &args::Emit, out: &mut Output) -> Outcome {
     let config = EmitConfig {
         solver: args.solver.as_deref().map(config::solver).transpose()?,
         quantifiers: config::quantifiers(args.encoding.quantifiers),
-        states: config::states(args.encoding.states)?,
+        states: config::states(args.encoding.states),
         deadline: config::deadline(args.encoding.timeout)?,
     };
     let loaded = Loaded::read(&args.problem, out)?;

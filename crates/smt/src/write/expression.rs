@@ -275,7 +275,9 @@ pub(crate) fn write_value(w: &mut impl io::Write, terms: &Terms, value: Value) -
             write!(w, "#x{bits:0digits$x}", digits = (width / 4) as usize)
         }
         Value::Bv { width, bits } => write!(w, "#b{bits:0digits$b}", digits = width as usize),
-        Value::Enum(enumeration, position) => terms.constructor_names(enumeration)[position as usize].write(w),
+        Value::Enum(enumeration, position) => {
+            terms.constructor_names(enumeration)[position as usize].write(w)
+        }
         Value::Int(i) if i < 0 => write!(w, "(- {})", i.unsigned_abs()),
         Value::Int(i) => write!(w, "{i}"),
         Value::Real(r) => {

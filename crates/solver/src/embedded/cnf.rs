@@ -241,7 +241,9 @@ impl Cnf {
             let before = stack.len();
             for &child in terms.children(t) {
                 match terms.sort(child) {
-                    Sort::BitVec(_) | Sort::Enum(_) if self.starts[child.index()].is_none() => stack.push(child),
+                    Sort::BitVec(_) | Sort::Enum(_) if self.starts[child.index()].is_none() => {
+                        stack.push(child)
+                    }
                     Sort::BitVec(_) | Sort::Enum(_) | Sort::Bool => {}
                     Sort::Int | Sort::Real => return Err(unsupported("integers and reals").into()),
                 }
@@ -323,7 +325,9 @@ impl Cnf {
 pub(super) fn width(terms: &Terms, t: Term) -> u32 {
     match terms.sort(t) {
         Sort::BitVec(width) => width,
-        Sort::Enum(enumeration) => (terms.constructors(enumeration) - 1).checked_ilog2().map_or(1, |log| log + 1),
+        Sort::Enum(enumeration) => {
+            (terms.constructors(enumeration) - 1).checked_ilog2().map_or(1, |log| log + 1)
+        }
         Sort::Bool | Sort::Int | Sort::Real => 0,
     }
 }
