@@ -145,7 +145,7 @@ impl ExplicitPath {
         alphabet: &Alphabet,
         stop: Stop<'_>,
     ) -> Result<Self, Error> {
-        script.section(format!("path {}", names.path));
+        script.section(format!("path.{}", names.path), format!("path {}", names.path));
         if layers.at.iter().any(Vec::is_empty) {
             script.assert(Term::FALSE);
         }

@@ -4,7 +4,7 @@
 //! start, and reach the goal, and ...". Parts that read no path of a later block can be demanded of the block at once;
 //! the other player then need only be asked about the others, and what the others leave to be met prunes better.
 
-use hyperplan_problem::{Formula, FormulaId, Node, PathId};
+use hyperplan_problem::{Formula, FormulaId, Node, Objective, PathId, Problem, display};
 use rustc_hash::FxHashSet;
 
 /// That all, or at least one, of some subformulas have given truth values.
@@ -30,6 +30,25 @@ impl Goal {
             [(only, want)] => Goal { parts: conjuncts(formula, *only, !want), all: true },
             parts => Goal { parts: parts.iter().map(|&(id, want)| (id, !want)).collect(), all: !self.all },
         }
+    }
+
+    /// The parts of a conjunction, each by itself; else the goal.
+    pub(crate) fn conjuncts(&self) -> Vec<Goal> {
+        if !self.all {
+            return vec![self.clone()];
+        }
+        self.parts.iter().map(|&part| Goal { parts: vec![part], all: true }).collect()
+    }
+
+    /// The least number of its subformulas, and the goal in the language's words.
+    pub(crate) fn described(&self, problem: &Problem, objective: &Objective) -> (usize, String) {
+        let number = self.parts.iter().map(|(id, _)| usize::from(*id)).min().unwrap_or(0);
+        let part = |&(id, want): &(FormulaId, bool)| {
+            let text = display::formula(problem, objective, id);
+            if want { text } else { format!("!({text})") }
+        };
+        let parts: Vec<String> = self.parts.iter().map(part).collect();
+        (number, parts.join(if self.all { " & " } else { " | " }))
     }
 
     /// Nothing at all.

@@ -39,7 +39,7 @@ pub use graph::{Graph, Graphs, LIVE, Letter, StateIx, TooLarge};
 pub use inputs::{Inputs, Move, Start};
 pub use inspect::{Findings, inspect};
 pub use path::{Instance, Known, Path};
-pub use query::{Env, Narrowing, Query};
+pub use query::{Copies, Env, Narrowing, Query};
 pub use reach::Layers;
 pub use symbolic::FixedRows;
 

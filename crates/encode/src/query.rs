@@ -16,7 +16,7 @@ use crate::{Encoder, Error, Graph, Model as SystemModel, States};
 use hyperplan_problem::{PathId, Quantifier, System, SystemId};
 use hyperplan_smt::{Model, Script, Term, Terms};
 use rustc_hash::FxHashMap;
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 use typed_index_collections::TiVec;
 
@@ -54,8 +54,21 @@ pub struct Query<'e, 'a> {
     instances: Instances,
     /// How states and letters are written, by system, where they are enumerated.
     alphabets: TiVec<SystemId, Alphabet>,
-    /// How many copies of each path variable there are, for names.
-    copies: FxHashMap<PathId, u32>,
+    copies: Rc<Copies>,
+}
+
+/// How many paths each path variable has stood for, so that all have names of their own.
+#[derive(Debug, Default)]
+pub struct Copies(RefCell<FxHashMap<PathId, u32>>);
+
+impl Copies {
+    /// The number of one more.
+    fn next(&self, path: PathId) -> u32 {
+        let mut copies = self.0.borrow_mut();
+        let copy = copies.entry(path).or_default();
+        *copy += 1;
+        *copy - 1
+    }
 }
 
 /// How the states and letters of each system are written.
@@ -75,7 +88,7 @@ fn alphabets(encoder: &Encoder<'_>, terms: &mut Terms) -> TiVec<SystemId, Alphab
 
 pub(crate) fn names<'a>(encoder: &Encoder<'a>, path: PathId, copy: u32) -> Names<'a> {
     let name = &encoder.objective.paths[path].name;
-    let path_name = if copy == 0 { name.clone() } else { format!("{name}!{copy}") };
+    let path_name = if copy == 0 { name.clone() } else { format!("{name}~{copy}") };
     Names { problem: encoder.problem, system: encoder.system(path), path: path_name }
 }
 
@@ -106,8 +119,15 @@ impl<'e, 'a> Query<'e, 'a> {
             lossy: Cell::new(false),
             instances: Instances::default(),
             alphabets,
-            copies: FxHashMap::default(),
+            copies: Rc::default(),
         }
+    }
+
+    /// Names paths beside those of other queries, so that these can be parts of one text.
+    #[must_use]
+    pub fn beside(mut self, copies: &Rc<Copies>) -> Self {
+        self.copies = copies.clone();
+        self
     }
 
     /// Keeps of the runs of the paths declared first only some.
@@ -135,10 +155,7 @@ impl<'e, 'a> Query<'e, 'a> {
     }
 
     fn names(&mut self, path: PathId) -> Names<'a> {
-        let copy = self.copies.entry(path).or_insert(0);
-        let number = *copy;
-        *copy += 1;
-        names(self.encoder, path, number)
+        names(self.encoder, path, self.copies.next(path))
     }
 
     /// What can matter of a path for its player to reach the goal. A path whose actions or states the formula
@@ -502,6 +519,21 @@ impl<'e, 'a> Query<'e, 'a> {
         let question =
             Sweep { encoder: self.encoder, graph, names: &names, path, layers: &layers, goal, env, game };
         Ok(sweep(&question, &mut self.script).is_some())
+    }
+
+    /// Asserts a goal over these paths, which must be all that it reads: of a conjunction each part in a section of
+    /// its own.
+    pub fn demand(&mut self, env: &Env, goal: &Goal) {
+        let encoder = self.encoder;
+        let formula = &encoder.objective.formula;
+        let atoms = PathAtoms::new(encoder.problem, encoder.objective, env);
+        let mut unroller = Unroller::new(formula, encoder.objective.mode, atoms);
+        for part in goal.conjuncts() {
+            let (number, text) = part.described(encoder.problem, encoder.objective);
+            self.script.section(format!("formula.{number}"), text);
+            let demanded = unroller.goal(&mut self.script.terms, &part);
+            self.script.assert(demanded);
+        }
     }
 
     /// A goal over these paths, which must be all that it reads.

@@ -60,7 +60,8 @@ type Way = Vec<Term>;
 /// of use has been demanded (though what has been is harmless).
 pub(crate) fn sweep(sweep: &Sweep<'_, '_>, script: &mut Script) -> Option<()> {
     let mut runs = Runs::new(sweep)?;
-    script.section(format!("no run of path {} defeats the others", sweep.names.path));
+    let path = &sweep.names.path;
+    script.section(format!("runs.{path}"), format!("no run of path {path} defeats the others"));
     let mut frontier = Frontier::new();
     let mut ways: BTreeMap<Pair, Vec<Way>> = BTreeMap::new();
     for &state in &sweep.layers.at[0] {

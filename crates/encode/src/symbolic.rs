@@ -64,7 +64,7 @@ impl Builder<'_> {
 
     /// A path that the solver chooses.
     pub(crate) fn declare(&self, script: &mut Script) -> SymbolicPath {
-        script.section(format!("path {}", self.names.path));
+        script.section(format!("path.{}", self.names.path), format!("path {}", self.names.path));
         let first = self.variables(&mut script.terms, 0, false);
         let start = self.initial(&mut script.terms, &first);
         script.assert(start);
@@ -449,7 +449,7 @@ fn value_of(ty: &Type, value: smt::Value) -> Option<Value> {
 
 /// Whether some state in range has no move: then there may be dead ends.
 pub(crate) fn stuck_state(script: &mut Script, builder: &Builder<'_>) {
-    script.section("a state without transitions");
+    script.section("stuck", "a state without transitions");
     let state = builder.variables(&mut script.terms, 0, false);
     for (value, var) in state.iter().zip(&builder.system().vars) {
         let range = in_range(&mut script.terms, value, &var.ty);

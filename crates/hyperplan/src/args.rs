@@ -183,20 +183,71 @@ pub(crate) struct Minimize {
     pub(crate) range: Option<(i64, i64)>,
 }
 
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Track {
+    /// One query
+    #[default]
+    Single,
+    /// The dialogue of the search by counterexamples
+    Incremental,
+    /// One query, and its model
+    Model,
+    /// One query with named assertions, and an unsatisfiable core
+    UnsatCore,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Status {
+    /// What solving it finds out
+    #[default]
+    Auto,
+    Sat,
+    Unsat,
+    Unknown,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct Emit {
     #[command(flatten)]
     pub(crate) problem: Problem,
     #[command(flatten)]
     pub(crate) selection: Selection,
-    #[command(flatten)]
-    pub(crate) encoding: Encoding,
+    /// How quantifiers are written; several, separated by commas, are a file each
+    #[arg(long, value_enum, value_name = "HOW", value_delimiter = ',', default_value = "auto")]
+    pub(crate) quantifiers: Vec<Quantifiers>,
+    /// How states are represented; several are a file each
+    #[arg(long, value_enum, value_name = "HOW", value_delimiter = ',', default_value = "auto")]
+    pub(crate) states: Vec<States>,
+    /// A file for each value of a constant, such as T
+    #[arg(long, value_name = "CONST=LO..HI", value_parser = range)]
+    pub(crate) each: Option<(String, i64, i64)>,
+    /// The track of SMT-COMP that the file is for
+    #[arg(long, value_enum, value_name = "TRACK", default_value_t = Track::Single)]
+    pub(crate) track: Track,
+    /// The expected answer; `auto` solves first
+    #[arg(long, value_enum, value_name = "STATUS", default_value_t = Status::Auto)]
+    pub(crate) status: Status,
     /// The solver to write for; without it, plain SMT-LIB for all
     #[arg(long, value_name = "SOLVER")]
     pub(crate) solver: Option<String>,
-    /// A file, or a directory for several objectives; without it, standard output
+    /// A file, or a directory for several; without it, standard output
     #[arg(short, long, value_name = "FILE|DIR")]
     pub(crate) output: Option<PathBuf>,
+    /// When it was generated; without it, that of SOURCE_DATE_EPOCH, or today
+    #[arg(long, value_name = "YYYY-MM-DD")]
+    pub(crate) date: Option<String>,
+    /// Who generated it, for the header
+    #[arg(long, value_name = "NAME")]
+    pub(crate) author: Option<String>,
+    /// No comments that say what follows
+    #[arg(long)]
+    pub(crate) no_comments: bool,
+    /// Every state that can be reached at a time, whether it can matter then or not: larger, and harder
+    #[arg(long)]
+    pub(crate) no_pruning: bool,
+    /// Seconds for the whole command
+    #[arg(long, value_name = "SECONDS")]
+    pub(crate) timeout: Option<f64>,
 }
 
 #[derive(Debug, Args)]
@@ -232,8 +283,14 @@ pub(crate) struct Verify {
     #[command(flatten)]
     pub(crate) problem: Problem,
     /// A strategy, as `solve --save` and `solve --format json` write it
-    #[arg(value_name = "STRATEGY.json")]
-    pub(crate) strategy: PathBuf,
+    #[arg(value_name = "STRATEGY.json", required_unless_present = "model", conflicts_with = "model")]
+    pub(crate) strategy: Option<PathBuf>,
+    /// What a solver printed for a query that `emit` wrote: its model, by (get-model) or (get-value (...))
+    #[arg(long, value_name = "FILE")]
+    pub(crate) model: Option<PathBuf>,
+    /// Saves the strategy that the model describes, as JSON
+    #[arg(long, value_name = "FILE.json", requires = "model")]
+    pub(crate) save: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) selection: Selection,
     #[command(flatten)]
@@ -277,6 +334,13 @@ fn setting(text: &str) -> Result<(String, String), String> {
 
 /// The greatest number that a range may have, as in problem files; differences of two of them are numbers still.
 const GREATEST: u64 = (1 << 62) - 1;
+
+fn range(text: &str) -> Result<(String, i64, i64), String> {
+    match minimize(text)? {
+        Minimize { constant, range: Some((lo, hi)) } => Ok((constant, lo, hi)),
+        Minimize { constant, range: None } => Err(format!("expected a range, such as {constant}=4..20")),
+    }
+}
 
 fn minimize(text: &str) -> Result<Minimize, String> {
     let (constant, range) = text.split_once('=').map_or((text, None), |(name, range)| (name, Some(range)));

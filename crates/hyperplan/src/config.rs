@@ -6,7 +6,8 @@ use crate::failure::{Failure, Outcome};
 use crate::output::check_writable;
 use crate::report::Picture;
 use crate::signals;
-use hyperplan_plan::{Config, Quantifiers, States};
+use chrono::{DateTime, NaiveDate, Utc};
+use hyperplan_plan::{Config, Quantifiers, States, Status, Track};
 use hyperplan_solver::{Deadline, Spec};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -86,6 +87,50 @@ pub(crate) fn states(typed: args::States) -> States {
         args::States::Enum => States::Enum,
         args::States::Real => States::Real,
     }
+}
+
+pub(crate) fn track(typed: args::Track) -> Track {
+    match typed {
+        args::Track::Single => Track::Single,
+        args::Track::Incremental => Track::Incremental,
+        args::Track::Model => Track::Model,
+        args::Track::UnsatCore => Track::UnsatCore,
+    }
+}
+
+/// The expected answer, where it was given.
+pub(crate) fn status(typed: args::Status) -> Option<Status> {
+    match typed {
+        args::Status::Auto => None,
+        args::Status::Sat => Some(Status::Sat),
+        args::Status::Unsat => Some(Status::Unsat),
+        args::Status::Unknown => Some(Status::Unknown),
+    }
+}
+
+/// A date as headers have it: the one that was given, that of `SOURCE_DATE_EPOCH`, or today's.
+pub(crate) fn date(given: Option<&str>) -> Outcome<String> {
+    let format = "%Y-%m-%d";
+    let date = match (given, std::env::var("SOURCE_DATE_EPOCH")) {
+        (Some(text), _) => NaiveDate::parse_from_str(text, format)
+            .map_err(|_| Failure::input(format_args!("--date {text} is no date; write it as 2026-01-31")))?,
+        (None, Ok(seconds)) => {
+            let date = seconds.trim().parse().ok().and_then(|seconds| DateTime::from_timestamp(seconds, 0));
+            let wrong =
+                || Failure::input(format_args!("SOURCE_DATE_EPOCH={seconds} is no number of seconds"));
+            date.ok_or_else(wrong)?.date_naive()
+        }
+        (None, Err(_)) => Utc::now().date_naive(),
+    };
+    Ok(date.format(format).to_string())
+}
+
+/// A name that fits on a line of a header.
+pub(crate) fn author(name: &str) -> Outcome<String> {
+    if name.trim().is_empty() || name.contains(|c: char| c.is_control() || "|\\".contains(c)) {
+        return Err(Failure::input("--author takes a name on one line, without | and \\"));
+    }
+    Ok(name.trim().to_owned())
 }
 
 /// The end of the whole command, by time or by signal.

@@ -1,4 +1,4 @@
-//! `horizon`, `check`, `emit`, `plot`, `solvers`, `templates`.
+//! `horizon`, `check`, `plot`, `solvers`, `templates`.
 
 mod common;
 
@@ -124,22 +124,6 @@ fn every_warning_is_documented() {
     assert!(codes.len() >= 15, "{codes:?}");
     for code in codes {
         assert!(page.contains(&format!("| `{code}` |")), "{code}");
-    }
-}
-
-#[test]
-fn emit_writes_smtlib() {
-    let run = hyperplan(&["emit", "rooms.hp", "--objective", "cso"]);
-    assert_eq!(run.status, 0, "{}", run.stderr);
-    assert!(run.stdout.contains("(set-logic ") && run.stdout.contains("(check-sat)"), "{}", run.stdout);
-    let run = hyperplan(&["emit", "rooms.hp", "--objective", "all"]);
-    assert_eq!((run.status, run.stdout.as_str()), (2, ""));
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let run = hyperplan(&["emit", "rooms.hp", "--objective", "all", "-o", text(folder.path())]);
-    assert_eq!((run.status, run.stdout.as_str()), (0, ""), "{}", run.stderr);
-    for objective in ["sp", "isr", "ar", "iso", "cso"] {
-        let file = folder.path().join(format!("{objective}.smt2"));
-        assert!(std::fs::read_to_string(file).expect("written").contains("(check-sat)"));
     }
 }
 

@@ -13,9 +13,10 @@
 //! finitely many, and the search ends.
 
 use crate::oracle::{Dialogue, Oracle, Stop};
-use hyperplan_encode::{Encoder, Env, Goal, Instance, Known, Narrowing, Query};
+use hyperplan_encode::{Copies, Encoder, Env, Goal, Instance, Known, Narrowing, Query};
 use hyperplan_problem::PathId;
 use hyperplan_smt::{Model, Term};
+use std::rc::Rc;
 
 /// Counterexamples asked for in one round.
 const PER_ROUND: usize = 8;
@@ -37,6 +38,8 @@ pub(crate) struct Cegis<'s, 'a, 'c> {
     pub(crate) narrowing: Narrowing,
     /// Whether nothing has been lost thereby, so that nothing found means that there is nothing.
     pub(crate) exact: bool,
+    /// How paths are named in all queries.
+    copies: Rc<Copies>,
 }
 
 /// An instance of the formula up to a block of the other player.
@@ -86,6 +89,7 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
             most_checks: None,
             narrowing: Narrowing::default(),
             exact: true,
+            copies: Rc::default(),
         }
     }
 
@@ -101,6 +105,19 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
     ) -> Result<Vec<Assignment>, Stop> {
         let last = level + 1 == self.blocks.len();
         let mut round = self.start(level, known, goal, !last || many > 1)?;
+        let found = self.search(&mut round, level, known, many)?;
+        self.oracle.close(round.dialogue);
+        Ok(found)
+    }
+
+    fn search(
+        &mut self,
+        round: &mut Round<'s, 'a>,
+        level: usize,
+        known: &Assignment,
+        many: usize,
+    ) -> Result<Vec<Assignment>, Stop> {
+        let last = level + 1 == self.blocks.len();
         let mut found = Vec::new();
         loop {
             if level == 0 {
@@ -117,14 +134,14 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
             let model = self.oracle.model(&mut round.dialogue, &round.query.script, symbols)?;
             // The block's own paths are declared, so they are paths in every model.
             let candidate =
-                self.assignment(&round, &round.first, known, &model)?.ok_or_else(|| self.no_path(&round))?;
+                self.assignment(round, &round.first, known, &model)?.ok_or_else(|| self.no_path(round))?;
             if !last {
-                if self.refine(&mut round, known, &model)? {
+                if self.refine(round, known, &model)? {
                     continue;
                 }
                 return Ok(vec![candidate]);
             }
-            let more = self.exclude(&mut round, level, &candidate);
+            let more = self.exclude(round, level, &candidate);
             found.push(candidate);
             if found.len() >= many || !more {
                 return Ok(found);
@@ -142,7 +159,7 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
     ) -> Result<Round<'s, 'a>, Stop> {
         let dialogue = self.oracle.open(1, incremental)?;
         let encoder = self.encoder;
-        let mut query = Query::new(encoder, known);
+        let mut query = Query::new(encoder, known).beside(&self.copies);
         if level == 0 {
             query = query.narrowed(self.narrowing);
             query.explore_block(&self.blocks[level], goal)?;
@@ -162,9 +179,7 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
         query.widen();
         self.exact &= query.is_exact();
         let (own, rest) = goal.split(formula, &|path| env[usize::from(path)].is_some());
-        query.script.section("what the formula asks of these paths alone");
-        let demanded = query.goal(&env, &own);
-        query.script.assert(demanded);
+        query.demand(&env, &own);
         let against = rest.opposed(formula);
         let first = Game { env, recipes, guard: Term::TRUE, level: level + 1 };
         let mut round =
@@ -286,7 +301,7 @@ impl Round<'_, '_> {
             self.games.push(game);
             return;
         }
-        self.query.script.section("the formula");
+        self.query.script.section("formula", "the rest of the formula");
         let formula = self.query.goal(&game.env, &self.goal);
         self.query.script.clause(&[!game.guard, formula]);
     }

@@ -133,19 +133,6 @@ impl Config {
     }
 }
 
-/// How to emit.
-#[derive(Clone, Debug)]
-pub struct EmitConfig {
-    /// The solver that the file is for, if one.
-    pub solver: Option<Spec>,
-    /// How quantifiers are written.
-    pub quantifiers: Quantifiers,
-    /// How states are written.
-    pub states: States,
-    /// When to give up.
-    pub deadline: Deadline,
-}
-
 /// The answer to an objective.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Verdict {
@@ -241,6 +228,9 @@ pub enum Error {
     /// All solvers of a race failed.
     #[error("no solver gave an answer: {}", listed(.0))]
     Race(Vec<(String, Error)>),
+    /// A file could not be read or written.
+    #[error("{0}")]
+    Io(String),
     /// Our own checker refutes our answer.
     #[error("this is a bug in hyperplan: the strategy found fails verification: {0}; please report it")]
     Bug(String),
@@ -253,7 +243,7 @@ impl Error {
     pub fn exit_code(&self) -> u8 {
         match self {
             Error::Encode(encode::Error::Interrupted) => 3,
-            Error::Unsupported(_) | Error::Encode(_) => 2,
+            Error::Unsupported(_) | Error::Encode(_) | Error::Io(_) => 2,
             Error::Solver(error) if error.is_unsupported() => 2,
             Error::Solver(_) | Error::WrongModel { .. } | Error::Disagreement { .. } => 4,
             Error::Race(errors) => errors.iter().map(|(_, error)| error.exit_code()).max().unwrap_or(4),

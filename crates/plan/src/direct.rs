@@ -1,8 +1,8 @@
 //! One query for the whole objective: with its quantifiers, or expanded.
 
 use crate::oracle::{Oracle, Stop};
-use hyperplan_encode::{Encoder, Env, Error, Goal, Known, Narrowing, Query};
-use hyperplan_problem::PathId;
+use hyperplan_encode::{Encoder, Env, Error, Goal, Known, Narrowing, Path, Query};
+use hyperplan_problem::{PathId, display};
 use hyperplan_smt::{Script, Term};
 
 /// A query whose models are the winning choices of the leading block.
@@ -43,7 +43,8 @@ pub(crate) fn keep<'e, 'a>(
             terms.forall(&bound, body)
         };
     }
-    direct.query.script.section("the formula, with its quantifiers");
+    let text = display::objective(encoder.problem, encoder.objective);
+    direct.query.script.section("formula", format!("the formula, with its quantifiers: {text}"));
     direct.query.script.assert(formula);
     Ok(direct)
 }
@@ -101,10 +102,14 @@ pub(crate) fn expand<'e, 'a>(
             copies = next;
         }
     }
-    direct.query.script.section("the rest of the formula, once for each case");
-    for (env, guard) in copies {
+    for (number, (env, guard)) in copies.into_iter().enumerate() {
         // A case that is impossible asks for nothing.
         if guard != Term::FALSE {
+            let number = number + 1;
+            direct
+                .query
+                .script
+                .section(format!("case.{number}"), format!("the rest of the formula, case {number}"));
             let formula = direct.query.goal(&env, &rest);
             direct.query.script.clause(&[!guard, formula]);
         }
@@ -123,13 +128,11 @@ fn demanding<'e, 'a>(
     let goal = Goal::new(formula, want);
     let (own, rest) = goal.split(formula, &|path| blocks[0].contains(&path));
     let mut direct = leading(encoder, blocks, &goal, narrowing)?;
-    direct.query.script.section("what the formula asks of the leading block alone");
-    let demanded = direct.query.goal(&direct.env, &own);
-    direct.query.script.assert(demanded);
+    direct.query.demand(&direct.env, &own);
     Ok((direct, rest))
 }
 
-fn leading<'e, 'a>(
+pub(crate) fn leading<'e, 'a>(
     encoder: &'e Encoder<'a>,
     blocks: &[Vec<PathId>],
     goal: &Goal,
@@ -149,6 +152,11 @@ impl Direct<'_, '_> {
     /// The query alone.
     pub(crate) fn into_script(self) -> Script {
         self.query.script
+    }
+
+    /// A path of the leading block.
+    pub(crate) fn path(&self, path: PathId) -> Option<&Path> {
+        self.env[usize::from(path)].as_deref()
     }
 
     /// Asks a solver; `blocks` of quantifiers are in the query, the leading one as free symbols.

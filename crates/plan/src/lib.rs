@@ -19,8 +19,8 @@ mod prepare;
 mod race;
 mod solve;
 
-pub use config::{Config, EmitConfig, Error, Outcome, Quantifiers, Seconds, States, Verdict, Verified};
-pub use emit::{Emitted, emit};
+pub use config::{Config, Error, Outcome, Quantifiers, Seconds, States, Verdict, Verified};
+pub use emit::{EmitConfig, Emitted, Status, Track, emit, strategy_of_model};
 pub use hyperplan_encode::Limits;
 pub use lint::{Budget, Lints, lint, lint_systems};
 pub use minimize::{Family, Least, MinimizeError, minimize};

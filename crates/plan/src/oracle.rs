@@ -1,6 +1,7 @@
 //! The solver as the search uses it: checks with a clock, and models that are evaluated before they are believed.
 
 use crate::config::{Config, Error};
+use crate::emit::Tape;
 use crate::evidence::{Claim, Evidence};
 use hyperplan_smt::{Model, Script, Term, check_model};
 use hyperplan_solver::{self as solver, Answer, Identity, Options, Session, Size, Spec, open};
@@ -33,6 +34,8 @@ pub(crate) struct Oracle<'c> {
     pub(crate) solving: f64,
     /// The largest query.
     pub(crate) largest: Size,
+    /// Where what is said is kept, for a benchmark.
+    pub(crate) tape: Option<Tape>,
 }
 
 impl<'c> Oracle<'c> {
@@ -44,6 +47,7 @@ impl<'c> Oracle<'c> {
             notes: Vec::new(),
             solving: 0.0,
             largest: Size::default(),
+            tape: None,
         }
     }
 
@@ -61,7 +65,17 @@ impl<'c> Oracle<'c> {
         let start = Instant::now();
         let session = open(&self.config.solver, &options)?;
         self.solving += start.elapsed().as_secs_f64();
+        if let Some(tape) = &mut self.tape {
+            tape.open();
+        }
         Ok(Dialogue { session, trusted: self.config.solver == Spec::Builtin, options, second: None })
+    }
+
+    /// Ends the dialogue that was opened last.
+    pub(crate) fn close(&mut self, _: Dialogue) {
+        if let Some(tape) = &mut self.tape {
+            tape.close();
+        }
     }
 
     /// Whether the script is satisfiable.
@@ -76,6 +90,9 @@ impl<'c> Oracle<'c> {
         let answer = answer?;
         if answer != Answer::Sat {
             self.introduce(dialogue);
+        }
+        if let (Some(tape), Answer::Sat | Answer::Unsat) = (&mut self.tape, &answer) {
+            tape.check(script, answer == Answer::Sat);
         }
         match answer {
             Answer::Sat => Ok(true),

@@ -19,8 +19,11 @@ pub use eval::{Evaluation, ModelCheck, Verdict, check_model, first_violated};
 pub use features::{Features, logic};
 pub use name::symbol_text;
 pub use rational::Rational;
-pub use script::Script;
+pub use script::{Script, Section};
 pub use term::{Enumeration, Op, Sort, Stem, Term};
 pub use terms::{Terms, View};
 pub use value::{Model, Value};
-pub use write::{Header, Printer, Status, WriteOptions, term_text, value_text, write_script};
+pub use write::{
+    Ask, Header, Printer, Status, WriteOptions, term_text, value_text, write_comment, write_header,
+    write_script,
+};

@@ -11,8 +11,17 @@ pub struct Script {
     literals: Vec<Term>,
     /// Where each assertion's literals end.
     ends: Vec<usize>,
-    /// Comments, each with the assertion that it stands before.
-    sections: Vec<(usize, String)>,
+    /// The sections, each with the assertion that it begins with.
+    sections: Vec<(usize, Section)>,
+}
+
+/// What the assertions that follow are about.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Section {
+    /// A name, from which those of its assertions are made where they have one: letters, digits and `._`.
+    pub name: String,
+    /// What it says, for a comment.
+    pub text: String,
 }
 
 impl Script {
@@ -46,14 +55,14 @@ impl Script {
         self.ends.push(self.literals.len());
     }
 
-    /// A comment for the assertions that follow.
-    pub fn section(&mut self, text: impl Into<String>) {
-        self.sections.push((self.ends.len(), text.into()));
+    /// Begins a section of assertions.
+    pub fn section(&mut self, name: impl Into<String>, text: impl Into<String>) {
+        self.sections.push((self.ends.len(), Section { name: name.into(), text: text.into() }));
     }
 
-    /// The comments, each with the index of the assertion that it stands before.
-    pub fn sections(&self) -> impl Iterator<Item = (usize, &str)> {
-        self.sections.iter().map(|(at, text)| (*at, text.as_str()))
+    /// The sections, each with the index of the assertion that it begins with.
+    pub fn sections(&self) -> impl Iterator<Item = (usize, &Section)> {
+        self.sections.iter().map(|(at, section)| (*at, section))
     }
 
     /// How many assertions there are.

@@ -23,10 +23,10 @@ fn writes_a_benchmark() {
     let b = boolean(&mut script.terms, "p.x", 1);
     let both = script.terms.and2(a, b);
     let c = boolean(&mut script.terms, "p.x", 2);
-    script.section("first part");
+    script.section("first", "first part");
     script.clause(&[!a, b, c]);
     let shared = script.terms.iff(both, c);
-    script.section("second\npart");
+    script.section("second", "second\npart");
     script.assert(shared);
     let other = script.terms.or2(!shared, both);
     script.assert(!other);

@@ -19,5 +19,7 @@ pub use deadline::Deadline;
 pub use error::Error;
 #[doc(hidden)]
 pub use external::understand_output;
-pub use external::{Catalog, ConfigError, Found, Install, Profile, discover};
+pub use external::{
+    Catalog, ConfigError, Facts, Found, Install, PrintedModel, PrintedModelError, Profile, discover,
+};
 pub use session::{Answer, Identity, Options, Session, Size, Spec, open};

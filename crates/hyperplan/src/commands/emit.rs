@@ -1,38 +1,118 @@
-//! `hyperplan emit`: queries as SMT-LIB 2.
+//! `hyperplan emit`: benchmarks in SMT-LIB 2.
 
 use crate::args;
 use crate::config;
 use crate::failure::{Failure, Outcome, Status};
-use crate::load::Loaded;
+use crate::load::{Loaded, read_source};
 use crate::output::{Output, cannot_write, check_writable};
-use hyperplan_plan::{EmitConfig, Emitted, emit};
+use hyperplan_plan::{EmitConfig, Emitted, Limits, emit};
+use hyperplan_problem::{Type, display};
 use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// The most values that `--each` takes.
+const MOST_VALUES: i64 = 100_000;
 
 pub(crate) fn run(args: &args::Emit, out: &mut Output) -> Outcome {
-    let config = EmitConfig {
+    let common = EmitConfig {
         solver: args.solver.as_deref().map(config::solver).transpose()?,
-        quantifiers: config::quantifiers(args.encoding.quantifiers),
-        states: config::states(args.encoding.states),
-        deadline: config::deadline(args.encoding.timeout)?,
+        track: config::track(args.track),
+        status: config::status(args.status),
+        comments: !args.no_comments,
+        limits: Limits { prune: !args.no_pruning, ..Limits::default() },
+        deadline: config::deadline(args.timeout)?,
+        ..EmitConfig::new(config::date(args.date.as_deref())?)
     };
-    let loaded = Loaded::read(&args.problem, out)?;
-    let objectives = loaded.selected(args.selection.objective.as_deref(), false)?;
-    let target = Target::new(args.output.as_deref(), objectives.len())?;
-    for objective in objectives {
-        let emitted = emit(&loaded.problem, objective, &config);
-        let emitted = emitted.map_err(|e| Failure {
-            status: Status::from_code(e.exit_code()),
-            message: format!("{}: {e}", objective.name),
-        })?;
-        emitted.notes.iter().for_each(|note| out.remark(format_args!("note: {note}")));
-        target.write(&objective.name, &emitted, out)?;
+    let common = match &args.author {
+        Some(author) => EmitConfig { author: config::author(author)?, ..common },
+        None => common,
+    };
+    let text = read_source(&args.problem.file)?;
+    let mut target = None;
+    for setting in settings(args)? {
+        let mut problem = args.problem.clone();
+        problem.set.extend(setting.clone());
+        let (loaded, consts) = Loaded::with_consts(&problem, &text, Instant::now(), out)?;
+        let objectives = loaded.selected(args.selection.objective.as_deref(), false)?;
+        let several = objectives.len() > 1 || setting.is_some();
+        let encodings: Vec<_> = args
+            .quantifiers
+            .iter()
+            .flat_map(|&quantifiers| args.states.iter().map(move |&states| (quantifiers, states)))
+            .collect();
+        let target = match &target {
+            Some(target) => target,
+            None => target.insert(Target::new(args.output.as_deref(), several || encodings.len() > 1)?),
+        };
+        let constants: Vec<String> = consts
+            .iter()
+            .map(|(name, value)| format!("{name} = {}", display::value(&Type::Int, *value)))
+            .collect();
+        for objective in objectives {
+            for &(quantifiers, states) in &encodings {
+                let mut remarks = vec![format!("Problem: {}", loaded.file)];
+                if !constants.is_empty() {
+                    remarks.push(format!("Constants: {}.", constants.join(", ")));
+                }
+                let config = EmitConfig {
+                    quantifiers: config::quantifiers(quantifiers),
+                    states: config::states(states),
+                    remarks,
+                    ..common.clone()
+                };
+                let mut emitted = emit(&loaded.problem, objective, &config).map_err(|e| Failure {
+                    status: Status::from_code(e.exit_code()),
+                    message: format!("{}: {e}", objective.name),
+                })?;
+                emitted.notes.iter().for_each(|note| out.remark(format_args!("note: {note}")));
+                let name = Name { objective: &objective.name, setting: setting.as_ref(), args };
+                target.write(&name.of(&config), &mut emitted, out)?;
+            }
+        }
     }
     Ok(Status::Good)
 }
 
-/// Where the queries go.
+/// A constant's name and value, as typed.
+type Setting = (String, String);
+
+/// The values of `--each`, or the file as it is.
+fn settings(args: &args::Emit) -> Outcome<Vec<Option<Setting>>> {
+    let Some((constant, lo, hi)) = &args.each else { return Ok(vec![None]) };
+    if hi - lo >= MOST_VALUES {
+        return Err(Failure::input(format_args!(
+            "--each {constant}={lo}..{hi} is more than {MOST_VALUES} files"
+        )));
+    }
+    Ok((*lo..=*hi).map(|value| Some((constant.clone(), value.to_string()))).collect())
+}
+
+/// What a file is called among several: the objective, and what differs from file to file.
+struct Name<'a> {
+    objective: &'a str,
+    setting: Option<&'a Setting>,
+    args: &'a args::Emit,
+}
+
+impl Name<'_> {
+    fn of(&self, config: &EmitConfig) -> String {
+        let mut name = self.objective.to_owned();
+        if let Some((constant, value)) = self.setting {
+            name += &format!("-{constant}={value}");
+        }
+        if self.args.states.len() > 1 {
+            name += &format!("-{}", config.states);
+        }
+        if self.args.quantifiers.len() > 1 {
+            name += &format!("-{}", config.quantifiers);
+        }
+        name + ".smt2"
+    }
+}
+
+/// Where the benchmarks go.
 enum Target {
     Standard,
     File(PathBuf),
@@ -40,15 +120,15 @@ enum Target {
 }
 
 impl Target {
-    fn new(output: Option<&Path>, objectives: usize) -> Outcome<Self> {
+    fn new(output: Option<&Path>, several: bool) -> Outcome<Self> {
         let Some(path) = output else {
-            if objectives > 1 {
-                return Err(Failure::input("several objectives need a directory: -o DIR"));
+            if several {
+                return Err(Failure::input("several files need a directory: -o DIR"));
             }
             return Ok(Target::Standard);
         };
         let ends_like_folder = path.as_os_str().to_string_lossy().ends_with(std::path::MAIN_SEPARATOR);
-        if objectives > 1 || path.is_dir() || ends_like_folder {
+        if several || path.is_dir() || ends_like_folder {
             std::fs::create_dir_all(path).map_err(|e| cannot_write(path, &e))?;
             return Ok(Target::Folder(path.to_owned()));
         }
@@ -56,24 +136,20 @@ impl Target {
         Ok(Target::File(path.to_owned()))
     }
 
-    fn write(&self, objective: &str, emitted: &Emitted, out: &mut Output) -> Outcome<()> {
+    fn write(&self, name: &str, emitted: &mut Emitted, out: &mut Output) -> Outcome<()> {
         match self {
-            Target::Standard => out.write(|w| print(emitted, w)),
+            Target::Standard => out.write(|w| emitted.write(w)),
             Target::File(path) => write_to(path, emitted),
-            Target::Folder(folder) => write_to(&folder.join(format!("{objective}.smt2")), emitted),
+            Target::Folder(folder) => write_to(&folder.join(name), emitted),
         }
     }
 }
 
-fn write_to(path: &Path, emitted: &Emitted) -> Outcome<()> {
-    let write = || {
+fn write_to(path: &Path, emitted: &mut Emitted) -> Outcome<()> {
+    let mut write = || {
         let mut file = BufWriter::new(File::create(path)?);
-        print(emitted, &mut file)?;
+        emitted.write(&mut file)?;
         file.flush()
     };
     write().map_err(|e| cannot_write(path, &e))
-}
-
-fn print(emitted: &Emitted, mut to: &mut dyn Write) -> io::Result<()> {
-    emitted.write(&mut to)
 }

@@ -2,33 +2,90 @@
 
 use crate::args;
 use crate::failure::{Failure, Outcome, Status};
-use crate::load::{Given, Loaded};
-use crate::output::Output;
+use crate::load::{Given, Loaded, read_source};
+use crate::output::{Output, cannot_write};
 use crate::report;
+use hyperplan_plan::strategy_of_model;
 use hyperplan_problem::answer::{WitnessPath, to_witness};
 use hyperplan_problem::{Objective, Problem, Quantifier, Strategy, Trace};
 use hyperplan_render::{actions_line, table};
+use hyperplan_solver::{Deadline, PrintedModel};
 use hyperplan_verify::{Budget, Defeat, Verdict, check};
 use serde::Serialize;
+use std::path::Path;
 
 pub(crate) fn run(args: &args::Verify, out: &mut Output) -> Outcome {
     let loaded = Loaded::read(&args.problem, out)?;
-    let given = Given::read(&args.strategy)?;
+    let name = args.selection.objective.as_deref();
+    let (given, strategies) = match (&args.strategy, &args.model) {
+        (Some(file), _) => {
+            let given = Given::read(file)?;
+            let strategies = given.strategies(&loaded, name)?;
+            (given.name, strategies)
+        }
+        (None, Some(file)) => (file.display().to_string(), of_model(&loaded, name, file)?),
+        (None, None) => return Err(Failure::input("a strategy or a model is needed")),
+    };
+    if let Some(path) = &args.save {
+        save(&loaded, &strategies, path)?;
+    }
     let mut worst = Status::Good;
-    for (objective, strategy) in given.strategies(&loaded, args.selection.objective.as_deref())? {
+    for (objective, strategy) in strategies {
         let verdict = check(&loaded.problem, objective, &strategy, &Budget::default());
-        let verdict = verdict.map_err(|e| Failure::input(format_args!("{}: {e}", given.name)))?;
-        let report = Report::new(&loaded, &given.name, objective, &verdict);
+        let verdict = verdict.map_err(|e| Failure::input(format_args!("{given}: {e}")))?;
+        let report = Report::new(&loaded, &given, objective, &verdict);
         match args.output.format {
             args::Format::Json => out.line(report::json(&report)?)?,
             args::Format::Text => {
-                let text = report.text(&loaded.problem, objective, &verdict);
+                let mut text = report.text(&loaded.problem, objective, &verdict);
+                // A model does not show the paths that it describes.
+                for trace in strategy.traces.iter().filter(|_| args.model.is_some()) {
+                    text.push_str(&shown(&loaded.problem, objective, trace));
+                }
                 out.write(|w| w.write_all(text.as_bytes()))?;
             }
         }
         worst = worst.max(report.status());
     }
     Ok(worst)
+}
+
+/// The strategy that a printed model describes.
+fn of_model<'l>(
+    loaded: &'l Loaded,
+    name: Option<&str>,
+    file: &Path,
+) -> Outcome<Vec<(&'l Objective, Strategy)>> {
+    let shown = file.display();
+    let model = PrintedModel::read(&read_source(file)?);
+    let model = model.map_err(|e| Failure::input(format_args!("{shown} is no model: {e}")))?;
+    let objectives = loaded.selected(name, false)?;
+    let strategy = |objective: &'l Objective| {
+        let strategy = strategy_of_model(&loaded.problem, objective, &model, &Deadline::never());
+        let strategy = strategy.map_err(|e| Failure::input(format_args!("{shown}: {e}")))?;
+        Ok((objective, strategy))
+    };
+    objectives.into_iter().map(strategy).collect()
+}
+
+/// Saves strategies as `verify` and `plot` read them, a line each.
+fn save(loaded: &Loaded, strategies: &[(&Objective, Strategy)], path: &Path) -> Outcome<()> {
+    let mut text = String::new();
+    for (objective, strategy) in strategies {
+        let witness = to_witness(&loaded.problem, objective, strategy);
+        let saved = Saved { file: &loaded.file, objective: &objective.name, witness };
+        text += &report::json(&saved)?;
+        text.push('\n');
+    }
+    std::fs::write(path, text).map_err(|e| cannot_write(path, &e))
+}
+
+/// A strategy without a verdict.
+#[derive(Serialize)]
+struct Saved<'a> {
+    file: &'a str,
+    objective: &'a str,
+    witness: Vec<WitnessPath>,
 }
 
 #[derive(Serialize)]
@@ -102,14 +159,14 @@ impl Report {
         };
         if let Verdict::Fails(Defeat::Paths(traces)) = verdict {
             for trace in traces {
-                text.push_str(&defeating(problem, objective, trace));
+                text.push_str(&shown(problem, objective, trace));
             }
         }
         text
     }
 }
 
-fn defeating(problem: &Problem, objective: &Objective, trace: &Trace) -> String {
+fn shown(problem: &Problem, objective: &Objective, trace: &Trace) -> String {
     let name = objective.paths.get(trace.path).map_or("", |p| p.name.as_str());
     let actions = actions_line(problem, objective, trace);
     format!("\n{name}: {actions}\n{}", table(problem, objective, trace))

@@ -143,7 +143,10 @@ impl Terms {
         if self.op(a) == Op::Const && self.op(b) == Op::Const {
             return Term::FALSE;
         }
-        self.intern(Op::Eq, Sort::Bool, &[a.min(b), a.max(b)])
+        // A constant comes last, for readers.
+        let (a, b) = (a.min(b), a.max(b));
+        let (a, b) = if self.op(a) == Op::Const { (b, a) } else { (a, b) };
+        self.intern(Op::Eq, Sort::Bool, &[a, b])
     }
 
     /// Panics unless the term is Boolean.

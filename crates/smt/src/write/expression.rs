@@ -14,13 +14,21 @@ use crate::term::{Op, Term};
 use crate::terms::{Terms, View};
 use crate::value::Value;
 
-/// The name of a shared term: `$` and its index. Symbols never look like that.
-pub(crate) struct SharedName(pub(crate) Term);
+/// The name of a shared term: `$` and its index, after the number of its series, if that is not 0. Symbols never look
+/// like that.
+pub(crate) struct SharedName {
+    pub(crate) series: u32,
+    pub(crate) term: Term,
+}
 
 impl Sym2Smt for SharedName {
     fn sym_to_smt2<W: io::Write>(&self, w: &mut W, _: ()) -> SmtRes<()> {
         w.write_all(b"$")?;
-        Ok(write_number(w, self.0.index() as u64)?)
+        if self.series > 0 {
+            write_number(w, self.series.into())?;
+            w.write_all(b".")?;
+        }
+        Ok(write_number(w, self.term.index() as u64)?)
     }
 }
 
@@ -32,6 +40,8 @@ pub(crate) struct Expression<'a> {
     /// Per node, whether a definition has named it.
     pub(crate) named: &'a [bool],
     pub(crate) term: Term,
+    /// The series of names.
+    pub(crate) series: u32,
     /// Print the node itself even if it is named: this is its definition.
     pub(crate) define: bool,
 }
@@ -92,7 +102,7 @@ impl Walk<'_> {
             Item::Close(count) => (0..count).try_for_each(|_| w.write_all(b")"))?,
             Item::Binding(t) => {
                 w.write_all(b"(")?;
-                SharedName(t).sym_to_smt2(w, ())?;
+                self.name(t).sym_to_smt2(w, ())?;
                 w.write_all(b" ")?;
             }
             Item::Bind(t) => {
@@ -103,6 +113,10 @@ impl Walk<'_> {
         Ok(())
     }
 
+    fn name(&self, term: Term) -> SharedName {
+        SharedName { series: self.of.series, term }
+    }
+
     fn term<W: io::Write>(&mut self, w: &mut W, t: Term) -> SmtRes<()> {
         let node = t.positive();
         if !self.of.named[t.index()] && !self.lets.contains(&node) {
@@ -111,7 +125,7 @@ impl Walk<'_> {
         if t.is_negated() {
             w.write_all(b"(not ")?;
         }
-        SharedName(node).sym_to_smt2(w, ())?;
+        self.name(node).sym_to_smt2(w, ())?;
         if t.is_negated() {
             w.write_all(b")")?;
         }
@@ -296,6 +310,6 @@ pub(crate) fn write_value(w: &mut impl io::Write, terms: &Terms, value: Value) -
 pub(crate) fn write_plain(w: &mut impl io::Write, terms: &Terms, term: Term) -> io::Result<()> {
     let named = vec![false; terms.len()];
     let free = terms.is_quantified(term).then(|| Free::new(terms));
-    let expression = Expression { terms, free: free.as_ref(), named: &named, term, define: false };
+    let expression = Expression { terms, free: free.as_ref(), named: &named, term, series: 0, define: false };
     expression.expr_to_smt2(w, ()).map_err(io_error)
 }

@@ -9,8 +9,10 @@ mod printer;
 
 use std::io::{self, Write as _};
 
+use rustc_hash::FxHashMap;
+
 use crate::features::logic;
-use crate::script::Script;
+use crate::script::{Script, Section};
 use crate::term::Term;
 use crate::terms::Terms;
 use crate::value::Value;
@@ -29,7 +31,9 @@ pub enum Status {
 }
 
 impl Status {
-    fn text(self) -> &'static str {
+    /// As SMT-LIB has it.
+    #[must_use]
+    pub fn text(self) -> &'static str {
         match self {
             Status::Sat => "sat",
             Status::Unsat => "unsat",
@@ -51,6 +55,19 @@ pub struct Header {
     pub status: Option<Status>,
 }
 
+/// What a benchmark asks for besides the answer.
+#[derive(Copy, Clone, PartialEq, Eq, Debug, Default)]
+pub enum Ask {
+    /// Nothing.
+    #[default]
+    Answer,
+    /// A model: `:produce-models` and `(get-model)`.
+    Model,
+    /// An unsatisfiable core: `:produce-unsat-cores`, a name for each assertion, made of `$`, that of its section and
+    /// its number there (`$path.p/12`), and `(get-unsat-core)`.
+    Core,
+}
+
 /// How to write a script.
 #[derive(Clone, Debug, Default)]
 pub struct WriteOptions {
@@ -58,8 +75,10 @@ pub struct WriteOptions {
     pub header: Header,
     /// The logic, where it should not be the smallest that fits.
     pub logic: Option<String>,
-    /// Ask for a model: `:produce-models` and `(get-model)`.
-    pub model: bool,
+    /// What is asked for besides the answer.
+    pub ask: Ask,
+    /// No comments that say what follows.
+    pub bare: bool,
     /// Boolean terms that are asserted after everything else: the assumptions of one check.
     pub assumptions: Vec<Term>,
 }
@@ -80,28 +99,62 @@ pub fn write_script(out: &mut impl io::Write, script: &Script, options: &WriteOp
     write_header(&mut w, options, &logic)?;
     printer.declare(&mut w, terms)?;
     let mut sections = script.sections().peekable();
+    let mut names = Names::default();
     for (index, literals) in script.assertions(0).enumerate() {
-        while let Some((_, text)) = sections.next_if(|(at, _)| *at <= index) {
-            write_comment(&mut w, text)?;
+        while let Some((_, section)) = sections.next_if(|(at, _)| *at <= index) {
+            names.enter(section);
+            if !options.bare {
+                write_comment(&mut w, &section.text)?;
+            }
         }
-        printer.assertion(&mut w, terms, literals)?;
+        match options.ask {
+            Ask::Core => printer.named_assertion(&mut w, terms, literals, &names.next())?,
+            Ask::Answer | Ask::Model => printer.assertion(&mut w, terms, literals)?,
+        }
     }
     for &assumption in &options.assumptions {
         printer.assertion(&mut w, terms, &[assumption])?;
     }
     w.write_all(b"(check-sat)\n")?;
-    if options.model {
-        w.write_all(b"(get-model)\n")?;
+    match options.ask {
+        Ask::Answer => {}
+        Ask::Model => w.write_all(b"(get-model)\n")?,
+        Ask::Core => w.write_all(b"(get-unsat-core)\n")?,
     }
     w.write_all(b"(exit)\n")?;
     w.flush()
 }
 
-fn write_header(w: &mut impl io::Write, options: &WriteOptions, logic: &str) -> io::Result<()> {
+/// Names for assertions: each section's are numbered from 1, on where a section comes again.
+#[derive(Default)]
+struct Names {
+    section: String,
+    used: FxHashMap<String, usize>,
+}
+
+impl Names {
+    fn enter(&mut self, section: &Section) {
+        self.section.clone_from(&section.name);
+    }
+
+    fn next(&mut self) -> String {
+        let number = self.used.entry(self.section.clone()).or_default();
+        *number += 1;
+        format!("${}/{number}", self.section)
+    }
+}
+
+/// Writes what a benchmark begins with, up to its declarations.
+///
+/// # Errors
+/// When writing fails.
+pub fn write_header(w: &mut impl io::Write, options: &WriteOptions, logic: &str) -> io::Result<()> {
     let Header { source, license, category, status } = &options.header;
     w.write_all(b"(set-info :smt-lib-version 2.6)\n")?;
-    if options.model {
-        w.write_all(b"(set-option :produce-models true)\n")?;
+    match options.ask {
+        Ask::Answer => {}
+        Ask::Model => w.write_all(b"(set-option :produce-models true)\n")?,
+        Ask::Core => w.write_all(b"(set-option :produce-unsat-cores true)\n")?,
     }
     writeln!(w, "(set-logic {logic})")?;
     if let Some(source) = source {
@@ -120,7 +173,11 @@ fn write_header(w: &mut impl io::Write, options: &WriteOptions, logic: &str) -> 
     Ok(())
 }
 
-fn write_comment(w: &mut impl io::Write, text: &str) -> io::Result<()> {
+/// Writes lines of comment.
+///
+/// # Errors
+/// When writing fails.
+pub fn write_comment(w: &mut impl io::Write, text: &str) -> io::Result<()> {
     for line in text.lines() {
         // A lone carriage return would end the comment for some readers.
         writeln!(w, "; {}", line.replace('\r', " ").trim_end())?;

@@ -39,6 +39,8 @@ pub struct Printer {
     /// The free variables, with the number of nodes that they were computed for.
     free: Option<(usize, Free)>,
     features: Features,
+    /// The series of names for shared terms.
+    series: u32,
 }
 
 impl Printer {
@@ -46,6 +48,12 @@ impl Printer {
     #[must_use]
     pub fn new() -> Self {
         Printer::default()
+    }
+
+    /// A printer whose names for shared terms are its own: several with different numbers may print into one text.
+    #[must_use]
+    pub fn numbered(series: u32) -> Self {
+        Printer { series, ..Printer::default() }
     }
 
     /// What occurs in everything scanned so far.
@@ -148,17 +156,38 @@ impl Printer {
     pub fn assertion(&mut self, w: &mut impl io::Write, terms: &Terms, literals: &[Term]) -> io::Result<()> {
         self.define(w, terms, literals)?;
         w.write_all(b"(assert ")?;
+        self.disjunction(w, terms, literals)?;
+        w.write_all(b")\n")
+    }
+
+    /// As [`Printer::assertion`], with a name, which must be a simple symbol that nothing else has.
+    ///
+    /// # Errors
+    /// When writing fails.
+    pub fn named_assertion(
+        &mut self,
+        w: &mut impl io::Write,
+        terms: &Terms,
+        literals: &[Term],
+        name: &str,
+    ) -> io::Result<()> {
+        self.define(w, terms, literals)?;
+        w.write_all(b"(assert (! ")?;
+        self.disjunction(w, terms, literals)?;
+        writeln!(w, " :named {name}))")
+    }
+
+    fn disjunction(&self, w: &mut impl io::Write, terms: &Terms, literals: &[Term]) -> io::Result<()> {
         if let [only] = literals {
-            self.term(w, terms, *only)?;
+            self.term(w, terms, *only)
         } else {
             w.write_all(b"(or")?;
             for &t in literals {
                 w.write_all(b" ")?;
                 self.term(w, terms, t)?;
             }
-            w.write_all(b")")?;
+            w.write_all(b")")
         }
-        w.write_all(b")\n")
     }
 
     /// Prints the definitions that are needed to print the terms, which must have been scanned.
@@ -207,7 +236,7 @@ impl Printer {
             return Ok(());
         }
         w.write_all(b"(define-fun ")?;
-        SharedName(t).sym_to_smt2(w, ()).map_err(io_error)?;
+        SharedName { series: self.series, term: t }.sym_to_smt2(w, ()).map_err(io_error)?;
         w.write_all(b" () ")?;
         SortName { terms, sort: terms.sort(t) }.sort_to_smt2(w).map_err(io_error)?;
         w.write_all(b" ")?;
@@ -248,6 +277,6 @@ impl Printer {
 
     fn expression<'a>(&'a self, terms: &'a Terms, term: Term, define: bool) -> Expression<'a> {
         let free = self.free.as_ref().map(|(_, free)| free);
-        Expression { terms, free, named: &self.named, term, define }
+        Expression { terms, free, named: &self.named, term, series: self.series, define }
     }
 }

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use hyperplan_smt::{Features, Op, Printer, Script, Term, Value, logic};
+use hyperplan_smt::{Features, Op, Printer, Script, Term, Value};
 
 use super::exchange::Exchange;
+use super::facts::Facts;
 use super::one_shot::OneShot;
 use super::profile::{Assumptions, Profile};
 use super::program::Program;
@@ -51,13 +52,8 @@ impl Program {
             text += &format!("(set-option {option} {})\n", options.seed % (1 << 31));
         }
         let quantifiers = features.quantifiers || options.quantifiers() > Quantifiers::None;
-        // Booleans alone would be QF_UF, for which solvers are slower than for bit-vectors.
-        let numbers = features.int || features.real || features.datatypes;
-        let bitvec = features.bitvec || !numbers && self.has_bit_vectors();
-        let smallest = logic(&Features { quantifiers, bitvec, ..features });
-        let logic = profile.and_then(|profile| profile.logic.as_deref()).unwrap_or(smallest);
-        text += &format!("(set-logic {logic})\n");
-        profile.map_or(Ok(()), |profile| profile.demand(&features))?;
+        let facts = profile.map_or_else(|| Facts::unknown(self.name.clone()), Facts::of_profile);
+        text += &format!("(set-logic {})\n", facts.logic(&Features { quantifiers, ..features })?);
         Ok(text)
     }
 }

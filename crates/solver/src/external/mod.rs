@@ -4,6 +4,8 @@ mod catalog;
 mod dialogue;
 mod discover;
 mod exchange;
+mod facts;
+mod model;
 mod one_shot;
 mod probe;
 mod process;
@@ -19,6 +21,8 @@ pub use catalog::{Catalog, ConfigError};
 pub(crate) use dialogue::{open_command, open_profile};
 pub(crate) use discover::for_arithmetic;
 pub use discover::{Found, discover};
+pub use facts::Facts;
+pub use model::{PrintedModel, PrintedModelError};
 pub use profile::{Install, Profile};
 pub(crate) use profile::{profile, that_take};
 #[doc(hidden)]

@@ -156,22 +156,27 @@ impl Profile {
     pub(crate) fn takes(&self, theory: Theory) -> bool {
         self.theories.as_ref().is_none_or(|theories| theories.contains(&theory))
     }
+}
 
-    /// Refuses what the solver cannot take, and names solvers that can.
-    pub(crate) fn demand(&self, features: &Features) -> Result<(), Error> {
-        let needed = [
-            (features.bitvec, Theory::BitVectors),
-            (features.int, Theory::Integers),
-            (features.real, Theory::Reals),
-            (features.datatypes, Theory::Datatypes),
-        ];
-        for (_, theory) in needed.into_iter().filter(|(needed, _)| *needed) {
-            if !self.takes(theory) {
-                let others = names(|profile| profile.takes(theory)).join(", ");
-                let what = format!("the {} solver has no {theory}: use one of {others}", self.name);
-                return Err(Error::Unsupported { what });
-            }
+/// Refuses what a solver that has those theories cannot take, and names solvers that can.
+pub(crate) fn demand_theories(
+    solver: &str,
+    theories: Option<&[Theory]>,
+    features: &Features,
+) -> Result<(), Error> {
+    let Some(theories) = theories else { return Ok(()) };
+    let needed = [
+        (features.bitvec, Theory::BitVectors),
+        (features.int, Theory::Integers),
+        (features.real, Theory::Reals),
+        (features.datatypes, Theory::Datatypes),
+    ];
+    for (_, theory) in needed.into_iter().filter(|(needed, _)| *needed) {
+        if !theories.contains(&theory) {
+            let others = names(|profile| profile.takes(theory)).join(", ");
+            let what = format!("the {solver} solver has no {theory}: use one of {others}");
+            return Err(Error::Unsupported { what });
         }
-        Ok(())
     }
+    Ok(())
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::discover::{locate, search};
-use super::profile::{FILE, Profile, Theory};
+use super::profile::{FILE, Profile};
 use super::version::Version;
 use crate::error::Error;
 use crate::session::{Options, Quantifiers};
@@ -65,11 +65,6 @@ impl Program {
     /// Whether to ask for the version in the dialogue.
     pub(super) fn is_to_tell_version(&self) -> bool {
         !self.version.is_known() && self.profile.as_ref().is_some_and(|profile| profile.tells_version)
-    }
-
-    /// Whether it takes bit-vectors, as far as it is known.
-    pub(super) fn has_bit_vectors(&self) -> bool {
-        self.profile.as_ref().is_none_or(|profile| profile.takes(Theory::BitVectors))
     }
 
     /// The commands that come first.

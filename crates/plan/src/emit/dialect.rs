@@ -1,0 +1,43 @@
+//! What a benchmark looks like for one solver, or for all.
+
+use crate::config::{Error, Quantifiers};
+use hyperplan_smt::{Features, logic};
+use hyperplan_solver::{Facts, Spec};
+
+/// What the solver takes that the benchmark is for.
+pub(super) struct Dialect(Option<Facts>);
+
+impl Dialect {
+    pub(super) fn new(solver: Option<&Spec>) -> Self {
+        Dialect(solver.map(Facts::of))
+    }
+
+    /// Quantifiers are kept where the solver takes them.
+    pub(super) fn quantifiers(&self, blocks: usize, notes: &mut Vec<String>) -> Quantifiers {
+        let Err(error) = self.demand_quantifiers(blocks) else { return Quantifiers::Keep };
+        notes.push(format!("quantifiers are expanded: {error}"));
+        Quantifiers::Expand
+    }
+
+    /// Refuses quantifiers that the solver does not take.
+    pub(super) fn demand_quantifiers(&self, blocks: usize) -> Result<(), Error> {
+        match &self.0 {
+            Some(facts) if blocks > 1 => Ok(facts.demand_quantifiers(blocks > 2)?),
+            _ => Ok(()),
+        }
+    }
+
+    /// The logic: the one that the terms need and no more, unless another serves the solver better.
+    pub(super) fn logic(&self, features: &Features, notes: &mut Vec<String>) -> Result<String, Error> {
+        let smallest = logic(features);
+        let Some(facts) = &self.0 else { return Ok(smallest.to_owned()) };
+        let logic = facts.logic(features)?;
+        if logic != smallest {
+            notes.push(format!(
+                "the logic is {logic} instead of {smallest}, which serves {} better",
+                facts.name()
+            ));
+        }
+        Ok(logic)
+    }
+}

@@ -1,0 +1,348 @@
+//! An objective as an SMT-LIB 2 benchmark: one query, or the dialogue of the search by counterexamples.
+
+mod about;
+mod dialect;
+mod model;
+mod tape;
+
+use crate::cegis::Cegis;
+use crate::config::{Config, Error, Quantifiers, States, Verdict};
+use crate::direct;
+use crate::oracle::{Oracle, Stop};
+use crate::prepare::{blocks, decided};
+use crate::solve::solve;
+use dialect::Dialect;
+use hyperplan_encode::{Encoder, Goal, Limits, Narrowing};
+use hyperplan_problem::{Mode, Objective, PathId, Problem, Quantifier};
+use hyperplan_smt::{Ask, Features, Header, Script, WriteOptions, write_header, write_script};
+use hyperplan_solver::{Deadline, Spec};
+use std::io::{self, Seek as _};
+pub(crate) use tape::Tape;
+
+pub use hyperplan_smt::Status;
+pub use model::strategy_of_model;
+
+/// Which of SMT-COMP's tracks a benchmark is for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Track {
+    /// One query.
+    #[default]
+    Single,
+    /// The dialogue of the search by counterexamples.
+    Incremental,
+    /// One query that asks for a model.
+    Model,
+    /// One query with named assertions that asks for an unsatisfiable core.
+    UnsatCore,
+}
+
+/// How to emit.
+#[derive(Clone, Debug)]
+pub struct EmitConfig {
+    /// The solver that the file is for, if one.
+    pub solver: Option<Spec>,
+    /// How quantifiers are written; [`Quantifiers::Cegis`] is a dialogue.
+    pub quantifiers: Quantifiers,
+    /// How states are written.
+    pub states: States,
+    /// The track.
+    pub track: Track,
+    /// The `:status`; without, it is found out by solving.
+    pub status: Option<Status>,
+    /// When the benchmark was generated, as YYYY-MM-DD.
+    pub date: String,
+    /// By whom.
+    pub author: String,
+    /// Further lines about the problem, such as the constants that were set.
+    pub remarks: Vec<String>,
+    /// Whether comments say what follows.
+    pub comments: bool,
+    /// Budgets of the encoding.
+    pub limits: Limits,
+    /// When to give up.
+    pub deadline: Deadline,
+}
+
+impl EmitConfig {
+    /// One query, with all choices left to hyperplan.
+    #[must_use]
+    pub fn new(date: impl Into<String>) -> Self {
+        EmitConfig {
+            solver: None,
+            quantifiers: Quantifiers::Auto,
+            states: States::Auto,
+            track: Track::Single,
+            status: None,
+            date: date.into(),
+            author: format!("hyperplan {}", env!("CARGO_PKG_VERSION")),
+            remarks: Vec::new(),
+            comments: true,
+            limits: Limits::default(),
+            deadline: Deadline::never(),
+        }
+    }
+}
+
+/// A benchmark, ready to be written.
+pub struct Emitted {
+    body: Body,
+    options: WriteOptions,
+    /// The logic.
+    pub logic: String,
+    /// The expected answer; of a dialogue, to its last check.
+    pub status: Status,
+    /// How quantifiers are written.
+    pub quantifiers: Quantifiers,
+    /// How states are written.
+    pub states: States,
+    /// Declared symbols.
+    pub symbols: usize,
+    /// Assertions.
+    pub assertions: usize,
+    /// What the user should know.
+    pub notes: Vec<String>,
+}
+
+enum Body {
+    Query(Script),
+    Dialogue(Tape),
+}
+
+impl Emitted {
+    /// Writes the benchmark.
+    ///
+    /// # Errors
+    /// When writing fails.
+    pub fn write(&mut self, mut to: &mut dyn io::Write) -> io::Result<()> {
+        match &mut self.body {
+            Body::Query(script) => write_script(&mut to, script, &self.options),
+            Body::Dialogue(tape) => {
+                write_header(&mut to, &self.options, &self.logic)?;
+                tape.text.rewind()?;
+                io::copy(&mut tape.text, &mut to)?;
+                to.write_all(b"(exit)\n")
+            }
+        }
+    }
+
+    /// The query; `None` where it is a dialogue.
+    #[must_use]
+    pub fn script(&self) -> Option<&Script> {
+        match &self.body {
+            Body::Query(script) => Some(script),
+            Body::Dialogue(_) => None,
+        }
+    }
+}
+
+/// Builds the benchmark of an objective. A query is satisfiable if and only if the leading block has a choice of paths
+/// that decides the objective: a strategy where it is `exists`, a counterexample where it is `forall`.
+///
+/// # Errors
+/// What is not supported, and what is too large.
+pub fn emit(problem: &Problem, objective: &Objective, config: &EmitConfig) -> Result<Emitted, Error> {
+    let stop = || config.deadline.passed();
+    let dialect = Dialect::new(config.solver.as_ref());
+    settled(problem, objective, config.states.wish(), config.limits, &stop, |encoder| {
+        build(encoder, config, &dialect)
+    })
+}
+
+/// What a use makes of the objective, decided where a quantifier ranges over nothing.
+fn settled<T>(
+    problem: &Problem,
+    objective: &Objective,
+    wish: Option<hyperplan_encode::States>,
+    limits: Limits,
+    stop: &dyn Fn() -> bool,
+    with: impl FnOnce(&Encoder<'_>) -> Result<T, Error>,
+) -> Result<T, Error> {
+    let encoder = Encoder::new(problem, objective, wish, limits, stop)?;
+    match empty(&encoder)? {
+        None => with(&encoder),
+        Some(quantifier) => {
+            let decided = decided(objective, quantifier);
+            with(&Encoder::new(problem, &decided, wish, limits, stop)?)
+        }
+    }
+}
+
+/// The first quantifier that ranges over nothing: it alone decides the objective.
+fn empty(encoder: &Encoder<'_>) -> Result<Option<Quantifier>, Error> {
+    let objective = encoder.objective;
+    for path in objective.paths.keys() {
+        match encoder.has_path(path) {
+            Some(true) => {}
+            Some(false) => return Ok(Some(objective.paths[path].quantifier)),
+            None if objective.mode == Mode::Bounded && encoder.system(path).is_finite() => {
+                return Err(Error::Unsupported(format!(
+                    "system {} is too large to enumerate, so it is not known which of its paths go on for ever; \
+                     use `within K`",
+                    encoder.system(path).name
+                )));
+            }
+            None => {}
+        }
+    }
+    Ok(None)
+}
+
+fn build(encoder: &Encoder<'_>, config: &EmitConfig, dialect: &Dialect) -> Result<Emitted, Error> {
+    let mut notes = Vec::new();
+    let objective = encoder.objective;
+    let blocks = blocks(objective);
+    let exists = objective.paths.first().is_none_or(|p| p.quantifier == Quantifier::Exists);
+    let quantifiers = quantifiers(config, blocks.len(), dialect, &mut notes)?;
+    let (body, found) = match quantifiers {
+        Quantifiers::Cegis => {
+            let (tape, found) = dialogue(encoder, config, &blocks, exists, &mut notes)?;
+            (Body::Dialogue(tape), found)
+        }
+        Quantifiers::Keep if blocks.len() > 1 => {
+            (Body::Query(direct::keep(encoder, &blocks, exists)?.into_script()), None)
+        }
+        _ => {
+            (Body::Query(direct::expand(encoder, &blocks, exists, Narrowing::default())?.into_script()), None)
+        }
+    };
+    let status = match (config.status, found) {
+        (Some(status), _) => status,
+        (None, Some(found)) => found,
+        (None, None) => expected(encoder, config, exists, &mut notes)?,
+    };
+    if !exists {
+        notes.push(format!(
+            "{} begins with forall: the query is satisfiable if it has a counterexample",
+            objective.name
+        ));
+    }
+    let ask = asked(config.track, status, &mut notes);
+    let (features, symbols, assertions) = match &body {
+        Body::Query(script) => (Features::of(script), script.symbols().len(), script.len()),
+        Body::Dialogue(tape) => (tape.features(), tape.symbols, tape.assertions),
+    };
+    let logic = dialect.logic(&features, &mut notes)?;
+    let header = Header {
+        source: Some(about::source(encoder, config, quantifiers, exists)),
+        license: Some("https://creativecommons.org/licenses/by/4.0/".into()),
+        category: Some("crafted".into()),
+        // A dialogue says it of each check.
+        status: matches!(body, Body::Query(_)).then_some(status),
+    };
+    let options = WriteOptions {
+        header,
+        logic: Some(logic.clone()),
+        ask,
+        bare: !config.comments,
+        ..WriteOptions::default()
+    };
+    let states = States::from(encoder.states);
+    Ok(Emitted { body, options, logic, status, quantifiers, states, symbols, assertions, notes })
+}
+
+/// How quantifiers are written, and whether that fits the track.
+fn quantifiers(
+    config: &EmitConfig,
+    blocks: usize,
+    dialect: &Dialect,
+    notes: &mut Vec<String>,
+) -> Result<Quantifiers, Error> {
+    match (config.track, config.quantifiers) {
+        (Track::Incremental, Quantifiers::Auto | Quantifiers::Cegis) | (Track::Single, Quantifiers::Cegis) => {
+            Ok(Quantifiers::Cegis)
+        }
+        (Track::Incremental, one) => Err(Error::Unsupported(format!(
+            "--quantifiers {one} gives a single query, which is no incremental benchmark; use --quantifiers cegis"
+        ))),
+        (Track::Model | Track::UnsatCore, Quantifiers::Cegis) => Err(Error::Unsupported(
+            "the search by counterexamples is a dialogue, which asks for no model and no core; use --quantifiers keep \
+             or expand, or --track incremental"
+                .into(),
+        )),
+        (_, Quantifiers::Expand) => Ok(Quantifiers::Expand),
+        (_, Quantifiers::Keep) if blocks == 1 => Ok(Quantifiers::Keep),
+        (_, Quantifiers::Keep) => dialect.demand_quantifiers(blocks).map(|()| Quantifiers::Keep),
+        (_, Quantifiers::Auto) => Ok(dialect.quantifiers(blocks, notes)),
+    }
+}
+
+/// What the track asks for besides the answer.
+fn asked(track: Track, status: Status, notes: &mut Vec<String>) -> Ask {
+    match (track, status) {
+        (Track::Single | Track::Incremental, _) => Ask::Answer,
+        (Track::Model, status) => {
+            if status == Status::Unsat {
+                notes.push("the query is unsatisfiable: it has no model".into());
+            }
+            Ask::Model
+        }
+        (Track::UnsatCore, status) => {
+            if status == Status::Sat {
+                notes.push("the query is satisfiable: it has no unsatisfiable core".into());
+            }
+            Ask::Core
+        }
+    }
+}
+
+/// The expected answer, found by solving: a strategy that was verified, or the proof that there is none.
+fn expected(
+    encoder: &Encoder<'_>,
+    config: &EmitConfig,
+    exists: bool,
+    notes: &mut Vec<String>,
+) -> Result<Status, Error> {
+    let finite = encoder.objective.paths.iter().all(|path| encoder.problem.systems[path.system].is_finite());
+    let solver = if finite { Some(Spec::Builtin) } else { Spec::for_arithmetic() };
+    let Some(solver) = solver else {
+        notes.push("the status is not known: no solver for integers and reals was found".into());
+        return Ok(Status::Unknown);
+    };
+    let own = Config { deadline: config.deadline.clone(), ..Config::new(solver) };
+    let outcome = solve(encoder.problem, encoder.objective, &own)?;
+    Ok(match (outcome.verdict, exists) {
+        (Verdict::Realizable, true) | (Verdict::Unrealizable, false) => Status::Sat,
+        (Verdict::Realizable, false) | (Verdict::Unrealizable, true) => Status::Unsat,
+        (Verdict::Unknown, _) => {
+            let reason = outcome.reason.unwrap_or_else(|| "the search gave up".into());
+            notes.push(format!("the status is not known: {reason}"));
+            Status::Unknown
+        }
+    })
+}
+
+/// Searches by counterexamples and keeps what is said.
+fn dialogue(
+    encoder: &Encoder<'_>,
+    config: &EmitConfig,
+    blocks: &[Vec<PathId>],
+    exists: bool,
+    notes: &mut Vec<String>,
+) -> Result<(Tape, Option<Status>), Error> {
+    let solver = if encoder.states.is_arithmetic() { Spec::for_arithmetic() } else { Some(Spec::Builtin) };
+    let solver = solver.ok_or_else(|| {
+        let what = "a search with integers or reals takes z3, cvc5 or yices, and none was found";
+        Error::Unsupported(what.into())
+    })?;
+    let own = Config { deadline: config.deadline.clone(), ..Config::new(solver) };
+    let mut oracle = Oracle::new(&own);
+    oracle.tape = Some(Tape::new(config.comments));
+    let goal = Goal::new(&encoder.objective.formula, exists);
+    let nothing = vec![None; encoder.objective.paths.len()];
+    let found = Cegis::new(encoder, &mut oracle, blocks).find(0, &nothing, &goal, 1);
+    let status = match found {
+        Ok(found) => Some(if found.is_empty() { Status::Unsat } else { Status::Sat }),
+        Err(Stop::Error(error)) => return Err(error),
+        Err(Stop::Unknown(reason)) => {
+            notes.push(format!("the dialogue ends before the answer is known: {reason}"));
+            Some(Status::Unknown)
+        }
+    };
+    let tape = oracle.tape.take().unwrap_or_else(|| Tape::new(config.comments));
+    if tape.checks == 0 {
+        return Err(Error::Unsupported(
+            "nothing was asked before the search ended: give it more time".into(),
+        ));
+    }
+    Ok((tape.finished()?, status))
+}

@@ -1,0 +1,94 @@
+//! From a model of an emitted query back to paths.
+
+use super::settled;
+use crate::config::{Error, States};
+use crate::direct;
+use crate::prepare::blocks;
+use hyperplan_encode::{Encoder, Goal, Limits, Narrowing};
+use hyperplan_problem::{Objective, PathId, Problem, Quantifier, Strategy};
+use hyperplan_smt::{Model, Term};
+use hyperplan_solver::{Deadline, PrintedModel};
+use std::cmp::Reverse;
+
+/// The paths that a model of an emitted query describes.
+///
+/// How states were written shows in the symbols: the way of which the model has the most, and lacks the fewest, is
+/// taken.
+///
+/// # Errors
+/// [`Error::Unsupported`] where the model belongs to no query of the objective, or a value in it cannot be read.
+pub fn strategy_of_model(
+    problem: &Problem,
+    objective: &Objective,
+    model: &PrintedModel,
+    deadline: &Deadline,
+) -> Result<Strategy, Error> {
+    let mut readings = Vec::new();
+    for states in [States::Onehot, States::Enum, States::Bitvec, States::Int, States::Real] {
+        for prune in [true, false] {
+            let limits = Limits { prune, ..Limits::default() };
+            let stop = || deadline.passed();
+            // What cannot be written so was not written so.
+            let encoder =
+                settled(problem, objective, states.wish(), limits, &stop, |encoder| read(encoder, model));
+            readings.extend(encoder.ok());
+        }
+    }
+    let best = readings.into_iter().min_by_key(|reading| (Reverse(reading.present), reading.absent));
+    match best {
+        Some(reading) if reading.present > 0 || reading.absent == 0 => reading.strategy,
+        _ if deadline.passed() => Err(Error::Unsupported("out of time".into())),
+        _ => {
+            let name = &objective.name;
+            Err(Error::Unsupported(format!(
+                "it is no model of objective {name} as emit writes it: no symbol fits"
+            )))
+        }
+    }
+}
+
+/// A model read in one way.
+struct Reading {
+    /// Symbols of the leading block's paths that the model has, and that it has not.
+    present: usize,
+    absent: usize,
+    strategy: Result<Strategy, Error>,
+}
+
+fn read(encoder: &Encoder<'_>, printed: &PrintedModel) -> Result<Reading, Error> {
+    let objective = encoder.objective;
+    let blocks = blocks(objective);
+    let exists = objective.paths.first().is_none_or(|p| p.quantifier == Quantifier::Exists);
+    let goal = Goal::new(&objective.formula, exists);
+    let direct = direct::leading(encoder, &blocks, &goal, Narrowing::default())?;
+    let terms = &direct.query.script.terms;
+    let symbols = direct.query.script.symbols();
+    let present = symbols.iter().filter(|&&symbol| printed.has(terms, symbol)).count();
+    let absent = symbols.len() - present;
+    let strategy = strategy(encoder, &direct, &blocks[0], &symbols, printed);
+    Ok(Reading { present, absent, strategy })
+}
+
+fn strategy(
+    encoder: &Encoder<'_>,
+    direct: &direct::Direct<'_, '_>,
+    block: &[PathId],
+    symbols: &[Term],
+    printed: &PrintedModel,
+) -> Result<Strategy, Error> {
+    let terms = &direct.query.script.terms;
+    let mut model = Model::new();
+    for &symbol in symbols {
+        let value = printed.value(terms, symbol).map_err(|e| Error::Unsupported(e.to_string()))?;
+        // A symbol that does not matter may be left out; any value will do.
+        model.insert(symbol, value.unwrap_or_else(|| hyperplan_smt::Value::default_of(terms.sort(symbol))));
+    }
+    let trace = |&path: &PathId| {
+        let declared = direct.path(path)?;
+        let known = direct.query.decode(path, declared, &model)?;
+        Some(known.trace(path, encoder.system(path)))
+    };
+    let traces: Option<Vec<_>> = block.iter().map(trace).collect();
+    let wrong = || Error::Unsupported("it describes no paths of the objective's systems".into());
+    Ok(Strategy { traces: traces.ok_or_else(wrong)? })
+}

@@ -1,0 +1,125 @@
+//! What is said in a search by counterexamples, as one incremental benchmark.
+//!
+//! The outermost search speaks at the bottom of the assertion stack. The search for what defeats a candidate speaks
+//! above it, between `push` and `pop`: its symbols are others, and what lies below is satisfiable, so the answers are
+//! those that it was given. Every check has its answer for `:status`.
+
+use crate::config::Error;
+use hyperplan_smt::{Features, Printer, Script, write_comment};
+use std::io::{self, Write};
+use tempfile::SpooledTempFile;
+
+/// How many bytes stay in memory.
+const IN_MEMORY: usize = 1 << 24;
+
+/// The text so far, and what each open dialogue has said.
+pub(crate) struct Tape {
+    pub(super) text: SpooledTempFile,
+    open: Vec<Scope>,
+    /// How many dialogues there were.
+    dialogues: u32,
+    features: Features,
+    comments: bool,
+    pub(super) checks: usize,
+    pub(super) symbols: usize,
+    pub(super) assertions: usize,
+    /// The first failure; nothing is written after it.
+    failure: Option<io::Error>,
+}
+
+struct Scope {
+    printer: Printer,
+    fed: usize,
+}
+
+impl Tape {
+    pub(super) fn new(comments: bool) -> Self {
+        Tape {
+            text: SpooledTempFile::new(IN_MEMORY),
+            open: Vec::new(),
+            dialogues: 0,
+            features: Features::default(),
+            comments,
+            checks: 0,
+            symbols: 0,
+            assertions: 0,
+            failure: None,
+        }
+    }
+
+    pub(super) fn features(&self) -> Features {
+        self.features
+    }
+
+    /// A dialogue begins.
+    pub(crate) fn open(&mut self) {
+        if !self.open.is_empty() {
+            self.keep(|tape| tape.text.write_all(b"(push 1)\n"));
+        }
+        let printer = Printer::numbered(self.dialogues);
+        self.dialogues += 1;
+        self.open.push(Scope { printer, fed: 0 });
+    }
+
+    /// The innermost dialogue ends.
+    pub(crate) fn close(&mut self) {
+        self.open.pop();
+        if !self.open.is_empty() {
+            self.keep(|tape| tape.text.write_all(b"(pop 1)\n"));
+        }
+    }
+
+    /// The innermost dialogue says what is new in its script, and gets an answer.
+    pub(crate) fn check(&mut self, script: &Script, satisfiable: bool) {
+        let Some(mut scope) = self.open.pop() else { return };
+        self.keep(|tape| tape.say(&mut scope, script, satisfiable));
+        self.open.push(scope);
+    }
+
+    fn say(&mut self, scope: &mut Scope, script: &Script, satisfiable: bool) -> io::Result<()> {
+        let (terms, printer) = (&script.terms, &mut scope.printer);
+        printer.scan(terms, script.literals(scope.fed));
+        self.features = self.features.union(printer.features());
+        let declared = printer.declared();
+        // One piece of text at a time: what is spooled is not buffered.
+        let mut text = Vec::new();
+        printer.declare(&mut text, terms)?;
+        self.symbols += printer.declared() - declared;
+        let mut sections = script.sections().filter(|(at, _)| *at >= scope.fed).peekable();
+        for (index, literals) in (scope.fed..).zip(script.assertions(scope.fed)) {
+            while let Some((_, section)) = sections.next_if(|(at, _)| *at <= index) {
+                if self.comments {
+                    write_comment(&mut text, &section.text)?;
+                }
+            }
+            printer.assertion(&mut text, terms, literals)?;
+            self.assertions += 1;
+            if text.len() > 1 << 16 {
+                self.text.write_all(&text)?;
+                text.clear();
+            }
+        }
+        scope.fed = script.len();
+        self.checks += 1;
+        writeln!(text, "(set-info :status {})", if satisfiable { "sat" } else { "unsat" })?;
+        text.extend_from_slice(b"(check-sat)\n");
+        self.text.write_all(&text)
+    }
+
+    fn keep(&mut self, write: impl FnOnce(&mut Self) -> io::Result<()>) {
+        if self.failure.is_none() {
+            self.failure = write(self).err();
+        }
+    }
+
+    /// The tape, unless something could not be kept.
+    pub(super) fn finished(mut self) -> Result<Self, Error> {
+        while self.open.len() > 1 {
+            self.close();
+        }
+        match self.failure.take() {
+            None => Ok(self),
+            Some(error) => Err(Error::Io(format!("cannot keep the dialogue in a temporary file: {error}"))),
+        }
+    }
+}

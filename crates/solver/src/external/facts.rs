@@ -1,0 +1,77 @@
+//! What is known of a solver before it is run: for files that are written for it.
+
+use hyperplan_smt::{Features, logic};
+
+use super::profile::{Profile, Theory, demand_theories, profile};
+use crate::error::Error;
+use crate::session::{Options, Quantifiers, Spec};
+
+/// What a solver takes, as far as it is known; what is not known, it takes.
+#[derive(Clone, Debug)]
+pub struct Facts {
+    name: String,
+    quantifiers: Quantifiers,
+    theories: Option<Vec<Theory>>,
+    logic: Option<String>,
+}
+
+impl Facts {
+    /// The facts of a solver.
+    #[must_use]
+    pub fn of(spec: &Spec) -> Facts {
+        let name = spec.name().to_owned();
+        match spec {
+            Spec::Builtin => {
+                let theories = Some(vec![Theory::BitVectors, Theory::Datatypes]);
+                Facts { name, quantifiers: Quantifiers::None, theories, logic: None }
+            }
+            Spec::Profile(called) => match profile(called) {
+                Some(profile) => Facts::of_profile(profile),
+                None => Facts::unknown(name),
+            },
+            Spec::Configured(profile) => Facts::of_profile(profile),
+            Spec::Command(_) => Facts::unknown(name),
+        }
+    }
+
+    pub(super) fn of_profile(profile: &Profile) -> Facts {
+        Facts {
+            name: profile.name.clone(),
+            quantifiers: profile.quantifiers,
+            theories: profile.theories.clone(),
+            logic: profile.logic.clone(),
+        }
+    }
+
+    pub(super) fn unknown(name: String) -> Facts {
+        Facts { name, quantifiers: Quantifiers::Any, theories: None, logic: None }
+    }
+
+    /// What the solver is called.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Refuses quantifiers, perhaps inside others, where the solver takes none such, and names solvers that do.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`].
+    pub fn demand_quantifiers(&self, nested: bool) -> Result<(), Error> {
+        Options { quantified: true, nested, ..Options::default() }
+            .demand_at_most(self.quantifiers, &self.name)
+    }
+
+    /// The logic that serves it best for terms with those features.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] where it has no theory for them.
+    pub fn logic(&self, features: &Features) -> Result<String, Error> {
+        demand_theories(&self.name, self.theories.as_deref(), features)?;
+        // Booleans alone would be QF_UF, for which solvers are slower than for bit-vectors.
+        let booleans = !(features.int || features.real || features.datatypes);
+        let vectors = self.theories.as_ref().is_none_or(|theories| theories.contains(&Theory::BitVectors));
+        let smallest = logic(&Features { bitvec: features.bitvec || booleans && vectors, ..*features });
+        Ok(self.logic.clone().unwrap_or_else(|| smallest.to_owned()))
+    }
+}
