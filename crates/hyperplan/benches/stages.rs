@@ -43,12 +43,11 @@ fn encoder(problem: &Problem) -> Encoder<'_> {
 
 /// The quantifier-free query, for all runs.
 fn query(problem: &Problem) -> Emitted {
-    let config = EmitConfig {
-        solver: None,
-        quantifiers: Quantifiers::Expand,
-        states: States::Auto,
-        deadline: Deadline::never(),
-    };
+    emitted(problem, Quantifiers::Expand)
+}
+
+fn emitted(problem: &Problem, quantifiers: Quantifiers) -> Emitted {
+    let config = EmitConfig { solver: None, quantifiers, states: States::Auto, deadline: Deadline::never() };
     emit(problem, objective(problem), &config).expect("it can be expanded")
 }
 
@@ -126,19 +125,18 @@ fn verify_strategy(criterion: &mut Criterion, name: &str, _: &Case, problem: &Pr
     });
 }
 
-/// The query as SMT-LIB.
+/// The query as SMT-LIB, into nothing: quantifier-free, and with its quantifiers.
 fn write(criterion: &mut Criterion, name: &str, _: &Case, problem: &Problem) {
-    let query = query(problem);
-    let mut text = Vec::new();
-    query.write(&mut text).expect("a vector takes everything");
     let mut group = criterion.benchmark_group("write");
-    group.throughput(Throughput::Bytes(text.len() as u64));
-    group.bench_function(name, |b| {
-        b.iter(|| {
-            text.clear();
-            query.write(&mut text).expect("a vector takes everything");
+    for (how, quantifiers) in [("", Quantifiers::Expand), ("-keep", Quantifiers::Keep)] {
+        let query = emitted(problem, quantifiers);
+        let mut text = Vec::new();
+        query.write(&mut text).expect("a vector takes everything");
+        group.throughput(Throughput::Bytes(text.len() as u64));
+        group.bench_function(format!("{name}{how}"), |b| {
+            b.iter(|| query.write(&mut std::io::sink()).expect("nothing can go wrong"));
         });
-    });
+    }
     group.finish();
 }
 
