@@ -1,6 +1,7 @@
 """What the command itself costs, and where its time goes."""
 
 import pathlib
+import re
 import shutil
 import tempfile
 from typing import NamedTuple
@@ -32,7 +33,21 @@ def command(context: Context) -> None:
         written = query.stat().st_size / 1e6
         what = f"`emit`, ar at {size} x {size}: {written:.1f} MB with building the query"
         rows.append([what, f"{seconds(time)} s, {written / time:.0f} MB/s", "-", "-"])
+    rows += writer()
     context.show("command", table(["what", "measured", "target", "met"], rows))
+
+
+def writer() -> list[list[str]]:
+    """How fast the writer is by itself, by its own benchmark."""
+    line = ["cargo", "bench", "--offline", "--manifest-path", str(ROOT / "Cargo.toml")]
+    done = run.once([*line, "-p", "hyperplan-smt", "--bench", "write", "--", "--quick"], 3600.0)
+    rows = []
+    # `write/NAME`, some lines later `thrpt: [LOW UNIT MIDDLE UNIT HIGH UNIT]`.
+    rates = re.compile(r"^(write/\w+)\s.*?thrpt:\s+\[\S+ \S+ (\S+) (\S+)", re.MULTILINE | re.DOTALL)
+    for name, speed, unit in rates.findall(done.output):
+        rate = float(speed) * {"KiB/s": 1 << 10, "MiB/s": 1 << 20, "GiB/s": 1 << 30}[unit] / 1e6
+        rows.append([f"the writer alone, `{name}`", f"{rate:.0f} MB/s", "150 MB/s", met(rate >= 150)])
+    return rows or [["the writer alone", done.problem or "no cargo", "150 MB/s", "-"]]
 
 
 def met(fits: bool) -> str:

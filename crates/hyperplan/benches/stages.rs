@@ -9,7 +9,7 @@ use common::{Case, OBJECTIVES, wanted_size};
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use hyperplan_encode::{Encoder, Goal, Limits, Query};
 use hyperplan_horizon::horizons;
-use hyperplan_plan::{Config, EmitConfig, Emitted, Quantifiers, States, emit, solve};
+use hyperplan_plan::{Config, EmitConfig, Emitted, Quantifiers, Status, emit, solve};
 use hyperplan_problem::{Objective, Problem};
 use hyperplan_solver::{Answer, Deadline, Options, Spec, open};
 use hyperplan_verify as verify;
@@ -43,12 +43,12 @@ fn encoder(problem: &Problem) -> Encoder<'_> {
 
 /// The quantifier-free query, for all runs.
 fn query(problem: &Problem) -> Emitted {
-    let config = EmitConfig {
-        solver: None,
-        quantifiers: Quantifiers::Expand,
-        states: States::Auto,
-        deadline: Deadline::never(),
-    };
+    emitted(problem, Quantifiers::Expand)
+}
+
+fn emitted(problem: &Problem, quantifiers: Quantifiers) -> Emitted {
+    let status = Some(Status::Unknown);
+    let config = EmitConfig { quantifiers, status, ..EmitConfig::new("2026-01-31") };
     emit(problem, objective(problem), &config).expect("it can be expanded")
 }
 
@@ -107,7 +107,7 @@ fn solve_query(criterion: &mut Criterion, name: &str, _: &Case, problem: &Proble
     criterion.bench_function(&format!("solve/{name}"), |b| {
         b.iter(|| {
             let mut session = open(&Spec::Builtin, &Options::default()).expect("it is built in");
-            let answer = session.check(query.script(), &[], &Deadline::never()).expect("it can be solved");
+            let answer = session.check(query.script().expect("one query"), &[], &Deadline::never()).expect("it can be solved");
             assert_eq!(answer, Answer::Sat);
         });
     });
@@ -126,19 +126,18 @@ fn verify_strategy(criterion: &mut Criterion, name: &str, _: &Case, problem: &Pr
     });
 }
 
-/// The query as SMT-LIB.
+/// The query as SMT-LIB, into nothing: quantifier-free, and with its quantifiers.
 fn write(criterion: &mut Criterion, name: &str, _: &Case, problem: &Problem) {
-    let query = query(problem);
-    let mut text = Vec::new();
-    query.write(&mut text).expect("a vector takes everything");
     let mut group = criterion.benchmark_group("write");
-    group.throughput(Throughput::Bytes(text.len() as u64));
-    group.bench_function(name, |b| {
-        b.iter(|| {
-            text.clear();
-            query.write(&mut text).expect("a vector takes everything");
+    for (how, quantifiers) in [("", Quantifiers::Expand), ("-keep", Quantifiers::Keep)] {
+        let mut query = emitted(problem, quantifiers);
+        let mut text = Vec::new();
+        query.write(&mut text).expect("a vector takes everything");
+        group.throughput(Throughput::Bytes(text.len() as u64));
+        group.bench_function(format!("{name}{how}"), |b| {
+            b.iter(|| query.write(&mut std::io::sink()).expect("nothing can go wrong"));
         });
-    });
+    }
     group.finish();
 }
 

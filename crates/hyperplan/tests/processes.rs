@@ -92,6 +92,35 @@ fn a_watchdog_is_not_left_running() {
 }
 
 #[test]
+fn what_was_sent_is_in_the_file_before_the_answer() {
+    let fake = Fake::new("exec sleep 300");
+    let queries = fake.folder().join("queries");
+    let solver = fake.program().display().to_string();
+    let options = ["solve", "rooms.hp", "--objective", "sp", "--solver", &solver, "--queries"];
+    let mut child = command(&options)
+        .arg(&queries)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the command was built");
+    let end = Instant::now() + Duration::from_secs(60);
+    let asked = || {
+        let files = std::fs::read_dir(&queries).into_iter().flatten().flatten();
+        let mut texts = files.map(|file| std::fs::read_to_string(file.path()).unwrap_or_default());
+        texts.any(|text| text.ends_with("(check-sat)\n"))
+    };
+    let mut kept = asked();
+    while !kept && Instant::now() < end {
+        std::thread::sleep(Duration::from_millis(20));
+        kept = asked();
+    }
+    signal(&child, "KILL");
+    child.wait().expect("it ends");
+    assert!(kept, "what was sent was not kept while the solver was thinking");
+    fake.is_clean().unwrap_or_else(|left| panic!("{left}"));
+}
+
+#[test]
 fn asking_for_abilities_leaves_nothing() {
     let fake = Fake::called("z3", "sleep 300 & note $!\nexec sleep 300");
     let begin = Instant::now();

@@ -18,6 +18,7 @@ use crate::terms::{Terms, View};
 
 /// A stem as it is written, without time and quotes.
 pub(crate) struct Mangled {
+    /// With the `@` that a time follows, or that marks a word.
     text: Box<str>,
     /// Whether some character needs the symbol to be quoted.
     quoted: bool,
@@ -48,7 +49,9 @@ impl Mangled {
         }
         let simple = |c: char| c.is_ascii_alphanumeric() || "~!@$%^&*_-+=<>.?/".contains(c);
         let quoted = !text.chars().all(simple) || text.starts_with(|c: char| c.is_ascii_digit() || c == '@');
-        Mangled { quoted: quoted || text.is_empty(), word: is_word(&text), text: text.into() }
+        let (quoted, word) = (quoted || text.is_empty(), is_word(&text));
+        text.push('@');
+        Mangled { text: text.into(), quoted, word }
     }
 
     /// Writes it as a name that has no time: of a sort or a constructor.
@@ -141,6 +144,7 @@ impl<'a> SymbolName<'a> {
         SymbolName { terms, symbol }
     }
 
+    #[inline]
     pub(crate) fn write(&self, w: &mut impl io::Write) -> io::Result<()> {
         let (stem, time) = match self.terms.view(self.symbol) {
             View::Symbol(stem, time) | View::Bound(stem, time) => (stem, time),
@@ -153,14 +157,14 @@ impl<'a> SymbolName<'a> {
         if self.terms.op(self.symbol) == Op::Bound {
             w.write_all(b"?")?;
         }
-        w.write_all(name.text.as_bytes())?;
+        let text = name.text.as_bytes();
         match time {
             Some(time) => {
-                w.write_all(b"@")?;
+                w.write_all(text)?;
                 write_number(w, time.into())?;
             }
-            None if name.word => w.write_all(b"@")?,
-            None => {}
+            None if name.word => w.write_all(text)?,
+            None => w.write_all(&text[..text.len() - 1])?,
         }
         if name.quoted {
             w.write_all(b"|")?;
@@ -192,7 +196,11 @@ impl Sort2Smt for SortName<'_> {
 }
 
 /// A decimal number, without the formatting machinery: the writer writes millions of them.
+#[inline]
 pub(crate) fn write_number(w: &mut impl io::Write, mut number: u64) -> io::Result<()> {
+    if number < 10 {
+        return w.write_all(&[b'0' + number as u8]);
+    }
     let mut digits = [0; 20];
     let mut at = digits.len();
     loop {

@@ -38,6 +38,11 @@ impl Transcript {
         let _ = self.file.write_all(text);
     }
 
+    /// Brings what was kept to the file: whoever waits may be killed.
+    pub(crate) fn flush(&mut self) {
+        let _ = self.file.flush();
+    }
+
     /// Keeps what the solver said, after what it was told last.
     pub(crate) fn comment(&mut self, text: &str) {
         for line in text.lines() {
@@ -50,7 +55,7 @@ impl Transcript {
 impl Drop for Transcript {
     fn drop(&mut self) {
         self.keep(b"(exit)\n");
-        let _ = self.file.flush();
+        self.flush();
     }
 }
 

@@ -1,14 +1,17 @@
 //! Prints one term, iteratively. Terms that are named at the top are printed as their names; under
 //! a binder, shared terms that depend on its variables are bound by `let`.
+//!
+//! rsmt2's traits are the way in; beneath them everything is written token by token, since a script has millions.
 
+use std::cell::RefCell;
 use std::io;
 
 use rsmt2::SmtRes;
 use rsmt2::print::{Expr2Smt, Sort2Smt as _, Sym2Smt};
-use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::free::Free;
 use super::io_error;
+use super::node_set::NodeSet;
 use crate::name::{SortName, SymbolName, write_number};
 use crate::term::{Op, Term};
 use crate::terms::{Terms, View};
@@ -21,14 +24,55 @@ pub(crate) struct SharedName {
     pub(crate) term: Term,
 }
 
-impl Sym2Smt for SharedName {
-    fn sym_to_smt2<W: io::Write>(&self, w: &mut W, _: ()) -> SmtRes<()> {
+impl SharedName {
+    fn write(&self, w: &mut impl io::Write) -> io::Result<()> {
         w.write_all(b"$")?;
         if self.series > 0 {
             write_number(w, self.series.into())?;
             w.write_all(b".")?;
         }
-        Ok(write_number(w, self.term.index() as u64)?)
+        write_number(w, self.term.index() as u64)
+    }
+}
+
+impl Sym2Smt for SharedName {
+    fn sym_to_smt2<W: io::Write>(&self, w: &mut W, _: ()) -> SmtRes<()> {
+        Ok(self.write(w)?)
+    }
+}
+
+/// What the printer knows of a node: one of these for each node of an arena.
+#[derive(Copy, Clone, Default)]
+pub(crate) struct Mark {
+    /// How often it occurs in what was scanned: 0, 1, or 2 for more.
+    pub(crate) uses: u8,
+    /// Whether it was seen to when it was printed (named, or left inline), and whether it was named.
+    flags: u8,
+    /// How deep it is when printed inline.
+    pub(crate) height: u8,
+}
+
+impl Mark {
+    const SETTLED: u8 = 1;
+    const NAMED: u8 = 2;
+
+    #[inline]
+    pub(crate) fn is_settled(self) -> bool {
+        self.flags & Mark::SETTLED != 0
+    }
+
+    #[inline]
+    pub(crate) fn is_named(self) -> bool {
+        self.flags & Mark::NAMED != 0
+    }
+
+    #[inline]
+    pub(crate) fn settle(&mut self, settled: bool) {
+        self.flags = self.flags & !Mark::SETTLED | u8::from(settled);
+    }
+
+    pub(crate) fn name(&mut self) {
+        self.flags |= Mark::NAMED;
     }
 }
 
@@ -37,8 +81,8 @@ pub(crate) struct Expression<'a> {
     pub(crate) terms: &'a Terms,
     /// The free variables, if anything is quantified.
     pub(crate) free: Option<&'a Free>,
-    /// Per node, whether a definition has named it.
-    pub(crate) named: &'a [bool],
+    pub(crate) marks: &'a [Mark],
+    pub(crate) scratch: &'a RefCell<Scratch>,
     pub(crate) term: Term,
     /// The series of names.
     pub(crate) series: u32,
@@ -48,236 +92,333 @@ pub(crate) struct Expression<'a> {
 
 impl Expr2Smt for Expression<'_> {
     fn expr_to_smt2<W: io::Write>(&self, w: &mut W, _: ()) -> SmtRes<()> {
+        Ok(self.write(w)?)
+    }
+}
+
+impl Expression<'_> {
+    fn write<W: io::Write>(&self, w: &mut W) -> io::Result<()> {
         // Most terms of most scripts are literals of clauses.
-        if self.terms.is_symbol(self.term) && !self.term.is_negated() {
-            return SymbolName::new(self.terms, self.term).sym_to_smt2(w, ());
+        if !self.define && self.leaf(w, self.term, false)? {
+            return Ok(());
         }
-        let mut walk =
-            Walk { of: self, stack: Vec::new(), lets: FxHashSet::default(), scope: FxHashMap::default() };
-        walk.stack.push(if self.define { Item::Expand(self.term) } else { Item::Term(self.term) });
-        while let Some(item) = walk.stack.pop() {
-            walk.step(w, item)?;
+        let mut scratch = self.scratch.borrow_mut();
+        let written = Walk { of: self, scratch: &mut scratch }.run(w);
+        if written.is_err() {
+            *scratch = Scratch::default();
         }
-        Ok(())
-    }
-}
-
-/// What is still to be printed.
-enum Item {
-    Term(Term),
-    /// The term, not its name.
-    Expand(Term),
-    Text(&'static str),
-    /// So many closing parentheses.
-    Close(usize),
-    /// ` ($name ` at the start of a binding.
-    Binding(Term),
-    /// From here on the term has its name.
-    Bind(Term),
-    /// The end of a binder's scope: classes to leave, names to drop, hidden names to restore.
-    Leave(Box<Binder>),
-}
-
-struct Binder {
-    classes: Vec<u32>,
-    bound: Vec<Term>,
-    hidden: Vec<Term>,
-}
-
-struct Walk<'a> {
-    of: &'a Expression<'a>,
-    stack: Vec<Item>,
-    /// Nodes that a `let` around this place has named.
-    lets: FxHashSet<Term>,
-    /// How many binders around this place bind each class.
-    scope: FxHashMap<u32, u32>,
-}
-
-impl Walk<'_> {
-    fn step<W: io::Write>(&mut self, w: &mut W, item: Item) -> SmtRes<()> {
-        match item {
-            Item::Term(t) => self.term(w, t)?,
-            Item::Expand(t) => self.expand(w, t)?,
-            Item::Text(text) => w.write_all(text.as_bytes())?,
-            Item::Close(count) => (0..count).try_for_each(|_| w.write_all(b")"))?,
-            Item::Binding(t) => {
-                w.write_all(b"(")?;
-                self.name(t).sym_to_smt2(w, ())?;
-                w.write_all(b" ")?;
-            }
-            Item::Bind(t) => {
-                self.lets.insert(t);
-            }
-            Item::Leave(binder) => self.leave(&binder),
-        }
-        Ok(())
+        written
     }
 
-    fn name(&self, term: Term) -> SharedName {
-        SharedName { series: self.of.series, term }
-    }
-
-    fn term<W: io::Write>(&mut self, w: &mut W, t: Term) -> SmtRes<()> {
-        let node = t.positive();
-        if !self.of.named[t.index()] && !self.lets.contains(&node) {
-            return self.expand(w, t);
+    /// Prints what has no parts here: a symbol, a constant, a name, each perhaps negated. Whether it was one.
+    #[inline]
+    fn leaf<W: io::Write>(&self, w: &mut W, t: Term, is_let: bool) -> io::Result<bool> {
+        let op = self.terms.op(t);
+        let named = is_let || self.marks[t.index()].is_named();
+        if !named && !matches!(op, Op::Symbol | Op::Bound | Op::Const | Op::True) {
+            return Ok(false);
+        }
+        if op == Op::True {
+            w.write_all(if t.is_negated() { b"false" } else { b"true" })?;
+            return Ok(true);
         }
         if t.is_negated() {
             w.write_all(b"(not ")?;
         }
-        self.name(node).sym_to_smt2(w, ())?;
+        match op {
+            _ if named => SharedName { series: self.series, term: t }.write(w)?,
+            Op::Const => write_value(w, self.terms, self.terms.value(t).expect("constants have a value"))?,
+            _ => SymbolName::new(self.terms, t).write(w)?,
+        }
         if t.is_negated() {
             w.write_all(b")")?;
         }
+        Ok(true)
+    }
+}
+
+/// What printing needs beyond the marks: kept from term to term, so that it is allocated once.
+#[derive(Default)]
+pub(crate) struct Scratch {
+    stack: Vec<Frame>,
+    /// Per class of bound variables, how many binders around this place bind it.
+    scope: Vec<u32>,
+    /// Per node, if anything is quantified.
+    local: Vec<Local>,
+    work: NodeSet,
+    found: NodeSet,
+}
+
+/// What is known of a node under a binder.
+#[derive(Copy, Clone, Default)]
+struct Local {
+    /// Whether a `let` around this place has named it.
+    is_let: bool,
+    /// While a binder is planned: how often the node occurs in its body, 0, 1, or 2 for more.
+    uses: u8,
+    /// While a binder is planned: how many layers of `let` have to come before it can be printed.
+    layer: u32,
+}
+
+/// What is still to be printed.
+enum Frame {
+    /// The arguments of an application from that one on, and its closing parenthesis.
+    Arguments(Term, u32),
+    Close,
+    /// What comes in a binder's scope.
+    Scope(Box<Binder>),
+}
+
+/// A binder: its `let`s, its body, and what is to be restored when it ends.
+struct Binder {
+    classes: Vec<u32>,
+    /// What is bound by `let`, in layers.
+    lets: Vec<(u32, Term)>,
+    /// Nodes that are bound by `let`s further out, for another variable of the same name.
+    hidden: Vec<Term>,
+    body: Term,
+    /// How many `let`s were printed.
+    printed: usize,
+    stage: Stage,
+}
+
+/// What of a binder was begun last.
+enum Stage {
+    Head,
+    Let,
+    Body,
+}
+
+struct Walk<'a> {
+    of: &'a Expression<'a>,
+    scratch: &'a mut Scratch,
+}
+
+impl Walk<'_> {
+    fn run<W: io::Write>(&mut self, w: &mut W) -> io::Result<()> {
+        match self.of.define {
+            true => self.expand(w, self.of.term)?,
+            false => self.term(w, self.of.term)?,
+        }
+        while let Some(frame) = self.scratch.stack.pop() {
+            match frame {
+                Frame::Arguments(t, next) => self.arguments(w, t, next as usize)?,
+                Frame::Close => w.write_all(b")")?,
+                Frame::Scope(binder) => self.scope(w, binder)?,
+            }
+        }
         Ok(())
     }
 
-    fn expand<W: io::Write>(&mut self, w: &mut W, t: Term) -> SmtRes<()> {
+    /// Prints a term or its name, or schedules the rest of it.
+    fn term<W: io::Write>(&mut self, w: &mut W, t: Term) -> io::Result<()> {
+        if self.leaf(w, t)? { Ok(()) } else { self.expand(w, t) }
+    }
+
+    /// Prints what has no parts here.
+    #[inline]
+    fn leaf<W: io::Write>(&self, w: &mut W, t: Term) -> io::Result<bool> {
+        let is_let = self.scratch.local.get(t.index()).is_some_and(|local| local.is_let);
+        self.of.leaf(w, t, is_let)
+    }
+
+    /// Begins a node, even if it has a name; what follows is scheduled.
+    fn expand<W: io::Write>(&mut self, w: &mut W, t: Term) -> io::Result<()> {
         let terms = self.of.terms;
-        match (terms.view(t), t.is_negated()) {
-            (View::Const(Value::Bool(_)), negated) => {
-                Ok(w.write_all(if negated { b"false" } else { b"true" })?)
-            }
-            (View::Const(value), _) => Ok(write_value(w, terms, value)?),
-            (View::Symbol(..) | View::Bound(..), false) => Ok(SymbolName::new(terms, t).sym_to_smt2(w, ())?),
-            (View::App(Op::And, conjuncts), true) => self.application(w, "or", conjuncts.iter().map(|&t| !t)),
-            (View::App(Op::BvUlt, &[a, b]), true) => self.application(w, "bvule", [b, a].into_iter()),
-            (View::App(Op::BvSlt, &[a, b]), true) => self.application(w, "bvsle", [b, a].into_iter()),
-            (View::App(Op::Le, &[a, b]), true) => self.application(w, "<", [b, a].into_iter()),
-            (View::Forall(bound, body), negated) => self.enter(w, bound, body, negated),
+        let name = match (terms.view(t), t.is_negated()) {
+            (View::Const(_) | View::Symbol(..) | View::Bound(..), _) => return self.leaf(w, t).map(drop),
+            (View::Forall(bound, body), negated) => return self.enter(w, bound, body, negated),
+            (View::App(Op::And, _), true) => "or",
+            (View::App(Op::BvUlt, _), true) => "bvule",
+            (View::App(Op::BvSlt, _), true) => "bvsle",
+            (View::App(Op::Le, _), true) => "<",
             (_, true) => {
                 w.write_all(b"(not ")?;
-                self.stack.push(Item::Close(1));
-                self.expand(w, !t)
+                self.scratch.stack.push(Frame::Close);
+                return self.expand(w, !t);
             }
-            (View::App(op, args), false) => self.application(w, op.name(), args.iter().copied()),
-            (View::Extend(op, a, by), false) => {
+            (View::App(op, _), false) => op.name(),
+            (View::Extend(op, _, by), false) => {
                 write!(w, "((_ {} {by})", op.name())?;
-                self.arguments(std::iter::once(a));
-                Ok(())
+                self.scratch.stack.push(Frame::Arguments(t, 0));
+                return Ok(());
             }
-            (View::Extract(a, hi, lo), false) => {
+            (View::Extract(_, hi, lo), false) => {
                 write!(w, "((_ extract {hi} {lo})")?;
-                self.arguments(std::iter::once(a));
-                Ok(())
+                self.scratch.stack.push(Frame::Arguments(t, 0));
+                return Ok(());
             }
-        }
-    }
-
-    fn application<W: io::Write>(
-        &mut self,
-        w: &mut W,
-        name: &str,
-        args: impl DoubleEndedIterator<Item = Term>,
-    ) -> SmtRes<()> {
+        };
         w.write_all(b"(")?;
         w.write_all(name.as_bytes())?;
-        self.arguments(args);
+        self.scratch.stack.push(Frame::Arguments(t, 0));
         Ok(())
     }
 
-    fn arguments(&mut self, args: impl DoubleEndedIterator<Item = Term>) {
-        self.stack.push(Item::Close(1));
-        for arg in args.rev() {
-            self.stack.push(Item::Term(arg));
-            self.stack.push(Item::Text(" "));
+    /// Prints arguments until one has parts of its own, and schedules the rest.
+    fn arguments<W: io::Write>(&mut self, w: &mut W, t: Term, next: usize) -> io::Result<()> {
+        let args = self.of.terms.children(t);
+        let is_or = t.is_negated() && self.of.terms.op(t) == Op::And;
+        for i in next..args.len() {
+            w.write_all(b" ")?;
+            let arg = match t.is_negated() {
+                false => args[i],
+                true if is_or => !args[i],
+                // The complement of a comparison has its sides exchanged.
+                true => args[args.len() - 1 - i],
+            };
+            if !self.leaf(w, arg)? {
+                // A node has fewer than 2^32 arguments.
+                self.scratch.stack.push(Frame::Arguments(t, i as u32 + 1));
+                return self.expand(w, arg);
+            }
         }
+        w.write_all(b")")
     }
 
     /// Prints the head of a quantifier and schedules its `let`s and its body.
-    fn enter<W: io::Write>(&mut self, w: &mut W, bound: &[Term], body: Term, exists: bool) -> SmtRes<()> {
+    fn enter<W: io::Write>(&mut self, w: &mut W, bound: &[Term], body: Term, exists: bool) -> io::Result<()> {
         w.write_all(if exists { b"(exists (" } else { b"(forall (" })?;
         for (i, &variable) in bound.iter().enumerate() {
             w.write_all(if i == 0 { b"(" } else { b" (" })?;
-            SymbolName::new(self.of.terms, variable).sym_to_smt2(w, ())?;
+            SymbolName::new(self.of.terms, variable).write(w)?;
             w.write_all(b" ")?;
-            SortName { terms: self.of.terms, sort: self.of.terms.sort(variable) }.sort_to_smt2(w)?;
+            let sort = SortName { terms: self.of.terms, sort: self.of.terms.sort(variable) };
+            sort.sort_to_smt2(w).map_err(io_error)?;
             w.write_all(b")")?;
         }
         w.write_all(b") ")?;
-        let (binder, layers) = self.plan(bound, body);
-        self.stack.push(Item::Leave(Box::new(binder)));
-        self.stack.push(Item::Close(1 + layers.len()));
-        self.stack.push(Item::Term(body.negate_if(exists)));
-        for layer in layers.iter().rev() {
-            self.stack.push(Item::Text(") "));
-            self.stack.extend(layer.iter().map(|&t| Item::Bind(t)));
-            for (i, &t) in layer.iter().enumerate().rev() {
-                self.stack.push(Item::Close(1));
-                self.stack.push(Item::Expand(t));
-                self.stack.push(Item::Binding(t));
-                self.stack.push(Item::Text(if i == 0 { "(let (" } else { " " }));
+        let binder = self.plan(bound, body, exists);
+        self.scratch.stack.push(Frame::Scope(Box::new(binder)));
+        Ok(())
+    }
+
+    /// Goes on in a binder's scope: the next `let`, the body, or its end.
+    fn scope<W: io::Write>(&mut self, w: &mut W, mut binder: Box<Binder>) -> io::Result<()> {
+        let layer = |at: usize| binder.lets.get(at).map(|&(layer, _)| layer);
+        if let Stage::Let = binder.stage {
+            w.write_all(b")")?;
+            let begun = binder.printed;
+            binder.printed += 1;
+            if layer(begun) != layer(begun + 1) {
+                w.write_all(b") ")?;
+                let whole =
+                    binder.lets[..=begun].iter().rev().take_while(|&&(of, _)| Some(of) == layer(begun));
+                whole.for_each(|&(_, t)| self.scratch.local[t.index()].is_let = true);
             }
         }
-        Ok(())
+        let at = binder.printed;
+        match binder.stage {
+            Stage::Head | Stage::Let => match binder.lets.get(at).copied() {
+                Some((of, t)) => {
+                    let first = at == 0 || layer(at - 1) != Some(of);
+                    w.write_all(if first { b"(let ((" } else { b" (" })?;
+                    SharedName { series: self.of.series, term: t }.write(w)?;
+                    w.write_all(b" ")?;
+                    binder.stage = Stage::Let;
+                    self.scratch.stack.push(Frame::Scope(binder));
+                    self.expand(w, t)
+                }
+                None => {
+                    let body = binder.body;
+                    binder.stage = Stage::Body;
+                    self.scratch.stack.push(Frame::Scope(binder));
+                    self.term(w, body)
+                }
+            },
+            Stage::Body => {
+                let layers = binder.lets.last().map_or(0, |&(layer, _)| layer + 1);
+                self.leave(&binder);
+                (0..=layers).try_for_each(|_| w.write_all(b")"))
+            }
+        }
     }
 
     /// Enters a binder's scope and finds what it has to bind by `let`: the nodes that depend on its
     /// variables and on those of no inner binder, and are used more than once. They come in layers:
     /// each depends on earlier layers only.
-    fn plan(&mut self, bound: &[Term], body: Term) -> (Binder, Vec<Vec<Term>>) {
-        let Some(free) = self.of.free else {
-            return (Binder { classes: Vec::new(), bound: Vec::new(), hidden: Vec::new() }, Vec::new());
-        };
-        let classes = free.classes_of(bound);
-        for &class in &classes {
-            *self.scope.entry(class).or_default() += 1;
+    fn plan(&mut self, bound: &[Term], body: Term, exists: bool) -> Binder {
+        let (classes, lets, hidden) = (Vec::new(), Vec::new(), Vec::new());
+        let body_wanted = body.negate_if(exists);
+        let mut binder = Binder { classes, lets, hidden, body: body_wanted, printed: 0, stage: Stage::Head };
+        let Some(free) = self.of.free else { return binder };
+        binder.classes = free.classes_of(bound);
+        self.scratch.make_room(self.of.terms.len(), free.class_count());
+        for &class in &binder.classes {
+            self.scratch.scope[class as usize] += 1;
         }
-        let (mut nodes, uses) = self.dependents(free, &classes, body);
-        nodes.sort_unstable();
-        // An outer `let` of a node means the outer variable of the same name.
-        let hidden: Vec<Term> = nodes.iter().copied().filter(|t| self.lets.contains(t)).collect();
-        for t in &hidden {
-            self.lets.remove(t);
-        }
-        let mut layers: Vec<Vec<Term>> = Vec::new();
-        let mut depth: FxHashMap<Term, usize> = FxHashMap::default();
-        for &t in &nodes {
-            let children = self.of.terms.children(t).iter();
-            let layer = children.filter_map(|c| depth.get(&c.positive())).max().copied().unwrap_or(0);
-            let shared = uses[&t] > 1 && self.of.terms.op(t) != Op::Bound;
-            let bindable = free.of(t).iter().all(|c| self.scope.get(c).is_some_and(|&n| n > 0));
-            if shared && bindable {
-                layers.resize_with(layers.len().max(layer + 1), Vec::new);
-                layers[layer].push(t);
-                depth.insert(t, layer + 1);
+        self.find_dependents(free, &binder.classes, body);
+        let Scratch { scope, local, work, found, .. } = &mut *self.scratch;
+        while let Some(t) = found.pop_first() {
+            // Once more, to forget it.
+            work.insert(t);
+            let here = &mut local[t.index()];
+            // An outer `let` of a node means the outer variable of the same name.
+            if std::mem::take(&mut here.is_let) {
+                binder.hidden.push(t);
+            }
+            let shared = here.uses > 1 && self.of.terms.op(t) != Op::Bound;
+            let layers = self.of.terms.children(t).iter().map(|child| local[child.index()].layer);
+            let layer = layers.max().unwrap_or(0);
+            if shared && free.of(t).iter().all(|&class| scope[class as usize] > 0) {
+                binder.lets.push((layer, t));
+                local[t.index()].layer = layer + 1;
             } else {
-                depth.insert(t, layer);
+                local[t.index()].layer = layer;
             }
         }
-        let names = layers.iter().flatten().copied().collect();
-        (Binder { classes, bound: names, hidden }, layers)
+        while let Some(t) = work.pop_first() {
+            local[t.index()] = Local::default();
+        }
+        binder.lets.sort_unstable();
+        binder
     }
 
-    /// The nodes in the body in which some variable of the classes is free, with their uses there.
-    fn dependents(&self, free: &Free, classes: &[u32], body: Term) -> (Vec<Term>, FxHashMap<Term, u32>) {
-        let mut uses: FxHashMap<Term, u32> = FxHashMap::default();
-        let mut nodes = Vec::new();
-        let mut stack = vec![body.positive()];
-        while let Some(t) = stack.pop() {
-            if !free.of(t).iter().any(|c| classes.binary_search(c).is_ok()) {
-                continue;
+    /// Finds the nodes in the body in which some variable of the classes is free, and counts their uses there.
+    fn find_dependents(&mut self, free: &Free, classes: &[u32], body: Term) {
+        let Scratch { local, work, found, .. } = &mut *self.scratch;
+        let depends = |t: Term| free.of(t).iter().any(|class| classes.binary_search(class).is_ok());
+        let mut touch = |t: Term, work: &mut NodeSet| {
+            if !depends(t) {
+                return;
             }
-            let count = uses.entry(t).or_default();
-            *count += 1;
-            if *count == 1 {
-                nodes.push(t);
-                stack.extend(self.of.terms.children(t).iter().map(|c| c.positive()));
+            let uses = &mut local[t.index()].uses;
+            if *uses == 0 {
+                work.insert(t);
+            }
+            *uses = 2.min(*uses + 1);
+        };
+        touch(body, work);
+        while let Some(t) = work.pop_last() {
+            found.insert(t);
+            for &child in self.of.terms.children(t) {
+                touch(child, work);
             }
         }
-        (nodes, uses)
     }
 
     fn leave(&mut self, binder: &Binder) {
-        for class in &binder.classes {
-            if let Some(count) = self.scope.get_mut(class) {
-                *count -= 1;
-            }
+        for &class in &binder.classes {
+            self.scratch.scope[class as usize] -= 1;
         }
-        for t in &binder.bound {
-            self.lets.remove(t);
+        for (_, t) in &binder.lets {
+            self.scratch.local[t.index()].is_let = false;
         }
-        self.lets.extend(binder.hidden.iter().copied());
+        for t in &binder.hidden {
+            self.scratch.local[t.index()].is_let = true;
+        }
+    }
+}
+
+impl Scratch {
+    /// Makes room for so many nodes and classes of bound variables.
+    fn make_room(&mut self, nodes: usize, classes: usize) {
+        if self.local.len() < nodes {
+            self.local.resize(nodes, Local::default());
+            self.work.grow(nodes);
+            self.found.grow(nodes);
+        }
+        self.scope.resize(classes.max(self.scope.len()), 0);
     }
 }
 
@@ -308,8 +449,17 @@ pub(crate) fn write_value(w: &mut impl io::Write, terms: &Terms, value: Value) -
 
 /// A term as text, without names for what is shared: for messages about small terms.
 pub(crate) fn write_plain(w: &mut impl io::Write, terms: &Terms, term: Term) -> io::Result<()> {
-    let named = vec![false; terms.len()];
+    let marks = vec![Mark::default(); terms.len()];
     let free = terms.is_quantified(term).then(|| Free::new(terms));
-    let expression = Expression { terms, free: free.as_ref(), named: &named, term, series: 0, define: false };
-    expression.expr_to_smt2(w, ()).map_err(io_error)
+    let scratch = RefCell::default();
+    Expression {
+        terms,
+        free: free.as_ref(),
+        marks: &marks,
+        scratch: &scratch,
+        term,
+        series: 0,
+        define: false,
+    }
+    .write(w)
 }

@@ -21,7 +21,8 @@ impl Set {
 pub(crate) struct Free {
     /// Per node.
     sets: Vec<Set>,
-    classes: FxHashMap<Term, u32>,
+    /// How many classes there are.
+    count: u32,
     interner: Interner,
 }
 
@@ -33,27 +34,29 @@ struct Interner {
 
 impl Free {
     pub(crate) fn new(terms: &Terms) -> Free {
-        let classes = classes(terms);
+        let (mut sets, count) = classes(terms);
         let mut interner = Interner::new();
-        let mut sets: Vec<Set> = Vec::with_capacity(terms.len());
         for t in terms.iter() {
-            let set = match terms.view(t) {
+            sets[t.index()] = match terms.op(t) {
                 _ if !terms.is_quantified(t) => Set::EMPTY,
-                View::Bound(..) => interner.intern(classes.get(&t).copied().into_iter().collect()),
-                View::Forall(bound, body) => {
-                    let bound: Vec<u32> = bound.iter().filter_map(|v| classes.get(v).copied()).collect();
+                Op::Bound => interner.intern(&[sets[t.index()].0]),
+                Op::Forall => {
+                    let View::Forall(bound, body) = terms.view(t) else { continue };
+                    let mut bound: Vec<Set> = bound.iter().map(|v| sets[v.index()]).collect();
+                    bound.dedup();
+                    let bound: Vec<u32> =
+                        bound.into_iter().flat_map(|set| interner.get(set)).copied().collect();
                     let free = interner.get(sets[body.index()]);
                     let rest: Vec<u32> = free.iter().copied().filter(|c| !bound.contains(c)).collect();
-                    interner.intern(rest)
+                    interner.intern(&rest)
                 }
                 _ => {
                     let children = terms.children(t).iter();
                     children.fold(Set::EMPTY, |set, child| interner.union(set, sets[child.index()]))
                 }
             };
-            sets.push(set);
         }
-        Free { sets, classes, interner }
+        Free { sets, count, interner }
     }
 
     /// Whether no bound variable is free in the term.
@@ -66,40 +69,48 @@ impl Free {
         self.interner.get(self.sets[t.index()])
     }
 
-    /// The classes of some variables, each once.
+    /// How many classes there are.
+    pub(crate) fn class_count(&self) -> usize {
+        self.count as usize
+    }
+
+    /// The classes of some variables, each once, sorted.
     pub(crate) fn classes_of(&self, variables: &[Term]) -> Vec<u32> {
-        let mut classes: Vec<u32> = variables.iter().filter_map(|v| self.classes.get(v).copied()).collect();
+        let mut sets: Vec<Set> = variables.iter().map(|v| self.sets[v.index()]).collect();
+        sets.dedup();
+        let mut classes: Vec<u32> =
+            sets.into_iter().flat_map(|set| self.interner.get(set)).copied().collect();
         classes.sort_unstable();
         classes.dedup();
         classes
     }
 }
 
-/// Numbers the classes of variables in the order of their first variable.
-fn classes(terms: &Terms) -> FxHashMap<Term, u32> {
-    let mut binders: FxHashMap<Term, Vec<u32>> = FxHashMap::default();
+/// Per bound variable the number of its class, and how many classes there are. Each quantifier splits the classes of
+/// its variables.
+fn classes(terms: &Terms) -> (Vec<Set>, u32) {
+    let mut classes = vec![Set::EMPTY; terms.len()];
+    let mut count = 1;
+    let mut split: FxHashMap<Set, Set> = FxHashMap::default();
     for t in terms.iter() {
-        if let View::Forall(bound, _) = terms.view(t) {
-            for &variable in bound {
-                binders.entry(variable).or_default().push(t.index() as u32);
-            }
+        let View::Forall(bound, _) = terms.view(t) else { continue };
+        split.clear();
+        for &variable in bound {
+            let class = &mut classes[variable.index()];
+            *class = *split.entry(*class).or_insert_with(|| {
+                count += 1;
+                Set(count - 1)
+            });
         }
     }
-    let mut numbers: FxHashMap<Vec<u32>, u32> = FxHashMap::default();
-    let mut classes = FxHashMap::default();
-    for t in terms.iter().filter(|&t| terms.op(t) == Op::Bound) {
-        let next = numbers.len() as u32;
-        let key = binders.remove(&t).unwrap_or_else(|| vec![t.index() as u32]);
-        classes.insert(t, *numbers.entry(key).or_insert(next));
-    }
-    classes
+    (classes, count)
 }
 
 impl Interner {
     fn new() -> Interner {
         let mut interner =
             Interner { sets: Vec::new(), ids: FxHashMap::default(), unions: FxHashMap::default() };
-        interner.intern(Vec::new());
+        interner.intern(&[]);
         interner
     }
 
@@ -107,14 +118,13 @@ impl Interner {
         &self.sets[set.0 as usize]
     }
 
-    fn intern(&mut self, classes: Vec<u32>) -> Set {
-        let classes = classes.into_boxed_slice();
-        if let Some(&set) = self.ids.get(&classes) {
+    fn intern(&mut self, classes: &[u32]) -> Set {
+        if let Some(&set) = self.ids.get(classes) {
             return set;
         }
         let set = Set(self.sets.len() as u32);
-        self.sets.push(classes.clone());
-        self.ids.insert(classes, set);
+        self.sets.push(classes.into());
+        self.ids.insert(classes.into(), set);
         set
     }
 
@@ -131,7 +141,7 @@ impl Interner {
         let mut classes = [self.get(a), self.get(b)].concat();
         classes.sort_unstable();
         classes.dedup();
-        let set = self.intern(classes);
+        let set = self.intern(&classes);
         self.unions.insert((a, b), set);
         set
     }

@@ -5,6 +5,7 @@
 
 mod expression;
 mod free;
+mod node_set;
 mod printer;
 
 use std::io::{self, Write as _};

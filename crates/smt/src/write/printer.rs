@@ -1,13 +1,15 @@
 //! Prints the assertions of a growing script: declarations, definitions of shared terms, assertions.
 
+use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::io;
 
 use rsmt2::print::{Expr2Smt, Sort2Smt, Sym2Smt};
 
-use super::expression::{Expression, SharedName};
+use super::expression::{Expression, Mark, Scratch, SharedName};
 use super::free::Free;
 use super::io_error;
+use super::node_set::NodeSet;
 use crate::features::Features;
 use crate::name::{SortName, SymbolName};
 use crate::term::{Enumeration, Op, Sort, Term};
@@ -18,27 +20,30 @@ const HEIGHT: u8 = 100;
 
 /// Remembers what of an arena has been declared and defined, so that a script can be printed bit by
 /// bit. Feed what is new to [`Printer::scan`], then [`Printer::declare`], then print each assertion.
+///
+/// Which terms are shared has to be known before the first is printed, so there are a few bytes for each node (some
+/// more where there are quantifiers), however often it is printed. Beyond these nothing grows with the text but a stack,
+/// with the depth to which terms are printed in one piece.
 #[derive(Default)]
 pub struct Printer {
-    /// Per node, how often it occurs in what was scanned: 0, 1, or 2 for more.
-    uses: Vec<u8>,
-    /// Per node, whether it was seen to when it was printed: named, or left inline.
-    settled: Vec<bool>,
-    /// Per node, whether a definition has named it.
-    named: Vec<bool>,
-    /// Per node, how deep it is when printed inline.
-    height: Vec<u8>,
+    /// Per node.
+    marks: Vec<Mark>,
+    /// Nodes that were met but not looked at yet: empty but while scanning or settling.
+    work: NodeSet,
+    /// Nodes that are being seen to.
+    found: NodeSet,
     /// The enumerations that occur.
     datatypes: BTreeSet<Enumeration>,
     /// Those to be declared.
     undeclared_datatypes: Vec<Enumeration>,
     /// Symbols to be declared.
-    undeclared: Vec<Term>,
+    undeclared: NodeSet,
     /// How many have been.
     declared: usize,
     /// The free variables, with the number of nodes that they were computed for.
     free: Option<(usize, Free)>,
     features: Features,
+    scratch: RefCell<Scratch>,
     /// The series of names for shared terms.
     series: u32,
 }
@@ -64,26 +69,25 @@ impl Printer {
 
     /// Takes note of terms that are to be printed: counts what they share.
     pub fn scan(&mut self, terms: &Terms, roots: &[Term]) {
-        self.uses.resize(terms.len(), 0);
-        self.settled.resize(terms.len(), false);
-        self.named.resize(terms.len(), false);
-        self.height.resize(terms.len(), 0);
-        let mut stack = Vec::new();
+        self.marks.resize(terms.len(), Mark::default());
+        for set in [&mut self.work, &mut self.found, &mut self.undeclared] {
+            set.grow(terms.len());
+        }
         for &root in roots {
-            self.touch(root, &mut stack);
-            while let Some(t) = stack.pop() {
-                self.features.add(terms, t);
-                if let Sort::Enum(enumeration) = terms.sort(t)
-                    && self.datatypes.insert(enumeration)
-                {
-                    self.undeclared_datatypes.push(enumeration);
-                }
-                if terms.op(t) == Op::Symbol {
-                    self.undeclared.push(t);
-                }
-                for &child in terms.children(t) {
-                    self.touch(child, &mut stack);
-                }
+            self.touch(root);
+        }
+        while let Some(t) = self.work.pop_last() {
+            self.features.add(terms, t);
+            if let Sort::Enum(enumeration) = terms.sort(t)
+                && self.datatypes.insert(enumeration)
+            {
+                self.undeclared_datatypes.push(enumeration);
+            }
+            if terms.op(t) == Op::Symbol {
+                self.undeclared.insert(t);
+            }
+            for &child in terms.children(t) {
+                self.touch(child);
             }
         }
         let quantified = self.features.quantifiers;
@@ -92,17 +96,18 @@ impl Printer {
         }
     }
 
-    fn touch(&mut self, t: Term, stack: &mut Vec<Term>) {
-        let uses = &mut self.uses[t.index()];
-        match *uses {
+    #[inline]
+    fn touch(&mut self, t: Term) {
+        let mark = &mut self.marks[t.index()];
+        match mark.uses {
             0 => {
-                *uses = 1;
-                stack.push(t.positive());
+                mark.uses = 1;
+                self.work.insert(t);
             }
             1 => {
-                *uses = 2;
+                mark.uses = 2;
                 // If it was printed inline already, it gets a name now.
-                self.settled[t.index()] = false;
+                mark.settle(false);
             }
             _ => {}
         }
@@ -120,10 +125,8 @@ impl Printer {
     /// When writing fails.
     pub fn declare(&mut self, w: &mut impl io::Write, terms: &Terms) -> io::Result<()> {
         self.declare_datatypes(w, terms)?;
-        let mut symbols = std::mem::take(&mut self.undeclared);
-        symbols.sort_unstable();
-        self.declared += symbols.len();
-        for symbol in symbols {
+        self.declared += self.undeclared.len();
+        while let Some(symbol) = self.undeclared.pop_first() {
             w.write_all(b"(declare-fun ")?;
             SymbolName::new(terms, symbol).sym_to_smt2(w, ()).map_err(io_error)?;
             w.write_all(b" () ")?;
@@ -133,7 +136,6 @@ impl Printer {
         Ok(())
     }
 
-    /// Declares the enumerations that were found since the last call.
     fn declare_datatypes(&mut self, w: &mut impl io::Write, terms: &Terms) -> io::Result<()> {
         for enumeration in std::mem::take(&mut self.undeclared_datatypes) {
             w.write_all(b"(declare-datatypes ((")?;
@@ -195,12 +197,14 @@ impl Printer {
     /// # Errors
     /// When writing fails.
     pub fn define(&mut self, w: &mut impl io::Write, terms: &Terms, roots: &[Term]) -> io::Result<()> {
-        for t in self.settle(terms, roots) {
-            let children = terms.children(t).iter();
-            let inline = children.filter(|c| !self.named[c.index()]).map(|c| self.height[c.index()]).max();
+        self.settle(terms, roots);
+        while let Some(t) = self.found.pop_first() {
+            let children = terms.children(t).iter().map(|child| self.marks[child.index()]);
+            let inline = children.filter(|child| !child.is_named()).map(|child| child.height).max();
             let height = inline.map_or(0, |height| height.saturating_add(1));
-            self.height[t.index()] = height;
-            let shared = self.uses[t.index()] > 1 || height >= HEIGHT;
+            let mark = &mut self.marks[t.index()];
+            mark.height = height;
+            let shared = mark.uses > 1 || height >= HEIGHT;
             if shared && !terms.children(t).is_empty() {
                 self.define_one(w, terms, t)?;
             }
@@ -208,31 +212,33 @@ impl Printer {
         Ok(())
     }
 
-    /// The nodes below the roots that were not seen to yet, children before parents.
-    fn settle(&mut self, terms: &Terms, roots: &[Term]) -> Vec<Term> {
-        let mut found = Vec::new();
-        let visit = |t: Term, settled: &mut Vec<bool>, found: &mut Vec<Term>| {
-            if !std::mem::replace(&mut settled[t.index()], true) && terms.op(t) != Op::Symbol {
-                found.push(t.positive());
-            }
-        };
+    /// Finds the nodes below the roots that were not seen to yet.
+    fn settle(&mut self, terms: &Terms, roots: &[Term]) {
         for &root in roots {
-            visit(root, &mut self.settled, &mut found);
+            self.visit(terms, root);
         }
-        let mut next = 0;
-        while let Some(&t) = found.get(next) {
-            next += 1;
+        while let Some(t) = self.work.pop_last() {
+            self.found.insert(t);
             for &child in terms.children(t) {
-                visit(child, &mut self.settled, &mut found);
+                self.visit(terms, child);
             }
         }
-        found.sort_unstable();
-        found
+    }
+
+    #[inline]
+    fn visit(&mut self, terms: &Terms, t: Term) {
+        let mark = &mut self.marks[t.index()];
+        if !mark.is_settled() {
+            mark.settle(true);
+            if terms.op(t) != Op::Symbol {
+                self.work.insert(t);
+            }
+        }
     }
 
     fn define_one(&mut self, w: &mut impl io::Write, terms: &Terms, t: Term) -> io::Result<()> {
         let closed = self.free.as_ref().is_none_or(|(_, free)| free.is_closed(t));
-        if !closed || self.named[t.index()] {
+        if !closed || self.marks[t.index()].is_named() {
             return Ok(());
         }
         w.write_all(b"(define-fun ")?;
@@ -242,7 +248,7 @@ impl Printer {
         w.write_all(b" ")?;
         self.expression(terms, t, true).expr_to_smt2(w, ()).map_err(io_error)?;
         w.write_all(b")\n")?;
-        self.named[t.index()] = true;
+        self.marks[t.index()].name();
         Ok(())
     }
 
@@ -257,13 +263,15 @@ impl Printer {
     /// Whether the symbol has occurred in what was scanned.
     #[must_use]
     pub fn is_declared(&self, symbol: Term) -> bool {
-        self.uses.get(symbol.index()).is_some_and(|&uses| uses > 0)
+        self.marks.get(symbol.index()).is_some_and(|mark| mark.uses > 0)
     }
 
     /// Whether the term is printed as a literal: a symbol or a name, perhaps under `not`.
     #[must_use]
     pub fn is_literal(&self, terms: &Terms, t: Term) -> bool {
-        t.is_const() || terms.op(t) == Op::Symbol || self.named.get(t.index()).is_some_and(|&named| named)
+        t.is_const()
+            || terms.op(t) == Op::Symbol
+            || self.marks.get(t.index()).is_some_and(|mark| mark.is_named())
     }
 
     /// Gives the term a name, whether it is shared or not.
@@ -277,6 +285,7 @@ impl Printer {
 
     fn expression<'a>(&'a self, terms: &'a Terms, term: Term, define: bool) -> Expression<'a> {
         let free = self.free.as_ref().map(|(_, free)| free);
-        Expression { terms, free, named: &self.named, term, series: self.series, define }
+        let (marks, scratch) = (&self.marks, &self.scratch);
+        Expression { terms, free, marks, scratch, term, series: self.series, define }
     }
 }

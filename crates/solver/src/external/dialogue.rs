@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use hyperplan_smt::{Features, Op, Printer, Script, Term, Value};
 
-use super::exchange::Exchange;
+use super::exchange::{Exchange, VERSION};
 use super::facts::Facts;
 use super::one_shot::OneShot;
 use super::profile::{Assumptions, Profile};
@@ -122,6 +122,10 @@ impl Dialogue {
             }
         }
         let _ = self.ask(running, script, assumptions, &mut text);
+        if running.checks == 1 {
+            // What it says from now on may be the answer.
+            running.exchange.refuse_answers()?;
+        }
         running.exchange.send(text, deadline);
         Ok(())
     }
@@ -167,12 +171,18 @@ impl Dialogue {
     /// Finds out the version, where that was not done yet and the solver tells it.
     fn learn_version(&self, running: &mut Running) {
         if self.program.is_to_tell_version() && running.exchange.is_open() {
-            let version = running.exchange.version(&self.deadline);
-            self.program.version.learn(&version.unwrap_or_default());
+            running.exchange.send(VERSION.to_vec(), &self.deadline);
+            self.hear_version(running);
         }
     }
 
-    /// Values of symbols that the solver knows.
+    fn hear_version(&self, running: &mut Running) {
+        let version = running.exchange.version(&self.deadline);
+        self.program.version.learn(&version.unwrap_or_default());
+    }
+
+    /// Values of symbols that the solver knows. All is asked at once, the version too, so that nobody waits for
+    /// somebody who waits.
     fn ask_values(
         &self,
         running: &mut Running,
@@ -180,9 +190,21 @@ impl Dialogue {
         symbols: &[Term],
     ) -> Result<Vec<Value>, Error> {
         running.exchange.demand_silence()?;
-        let text = get_value(&running.printer, script, symbols);
+        let ask = |symbols| get_value(&running.printer, script, symbols);
+        let mut text: Vec<u8> = symbols.chunks(ASK).flat_map(ask).collect();
+        let version = self.program.is_to_tell_version();
+        if version {
+            text.extend_from_slice(VERSION);
+        }
         running.exchange.send(text, &self.deadline);
-        running.exchange.values(script, symbols, &self.deadline)
+        let mut values = Vec::with_capacity(symbols.len());
+        for asked in symbols.chunks(ASK) {
+            values.extend(running.exchange.values(script, asked, &self.deadline)?);
+        }
+        if version {
+            self.hear_version(running);
+        }
+        Ok(values)
     }
 
     fn known_values(
@@ -196,11 +218,9 @@ impl Dialogue {
         let known =
             |i: &usize| terms.op(symbols[*i]) == Op::Symbol && running.printer.is_declared(symbols[*i]);
         let known: Vec<usize> = (0..symbols.len()).filter(known).collect();
-        for chunk in known.chunks(ASK) {
-            let asked: Vec<Term> = chunk.iter().map(|&i| symbols[i].positive()).collect();
-            for (&i, value) in chunk.iter().zip(self.ask_values(running, script, &asked)?) {
-                values[i] = value;
-            }
+        let asked: Vec<Term> = known.iter().map(|&i| symbols[i].positive()).collect();
+        for (i, value) in known.into_iter().zip(self.ask_values(running, script, &asked)?) {
+            values[i] = value;
         }
         negate(&mut values, symbols);
         Ok(values)
@@ -269,7 +289,6 @@ impl Session for Dialogue {
             }
         };
         let values = self.known_values(&mut running, script, symbols)?;
-        self.learn_version(&mut running);
         self.running = Some(running);
         Ok(values)
     }

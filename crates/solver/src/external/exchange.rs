@@ -15,6 +15,9 @@ use crate::transcript::Transcript;
 /// How long a solver that gave up may take to say why.
 const PATIENCE: Duration = Duration::from_secs(1);
 
+/// Asks for the version.
+pub(super) const VERSION: &[u8] = b"(get-info :version)\n";
+
 /// One process, and the record of the talk.
 pub(super) struct Exchange {
     name: String,
@@ -70,6 +73,9 @@ impl Exchange {
     }
 
     fn next(&mut self, deadline: &Deadline) -> Next {
+        if let Some(transcript) = &mut self.transcript {
+            transcript.flush();
+        }
         let next = self.process.next(deadline);
         if let Some(transcript) = &mut self.transcript {
             match &next {
@@ -84,6 +90,9 @@ impl Exchange {
     /// Refuses a process that has spoken before it was asked: its replies are out of step.
     pub(super) fn demand_silence(&mut self) -> Result<(), Error> {
         while let Some(reply) = self.process.said_before() {
+            if let Some(transcript) = &mut self.transcript {
+                transcript.comment(reply.text());
+            }
             match reply::meaning(&reply) {
                 Meaning::Noise => {}
                 Meaning::Error(message) => return Err(self.reported(message)),
@@ -93,6 +102,15 @@ impl Exchange {
             }
         }
         Ok(())
+    }
+
+    /// Refuses a process that has answered before it was asked anything. One that does so a little later cannot be told
+    /// from one that is fast: that takes a cross-check.
+    pub(super) fn refuse_answers(&mut self) -> Result<(), Error> {
+        let is_answer = |reply: &&Reply| matches!(reply::meaning(reply), Meaning::Answer(_));
+        let Some(last) = self.process.unread().filter(is_answer).last() else { return Ok(()) };
+        let said = last.text().to_owned();
+        Err(self.misunderstood("nothing yet", &said))
     }
 
     /// The answer to a check, from what the solver says; `None` at the deadline.
@@ -130,11 +148,10 @@ impl Exchange {
         reason.unwrap_or_else(|| "unknown".to_owned())
     }
 
-    /// What the solver says its version is. One that does not say so soon is not asked any more.
+    /// What the solver says its version is, after [`VERSION`] was sent. One that does not say so soon is not asked any
+    /// more.
     pub(super) fn version(&mut self, deadline: &Deadline) -> Option<String> {
-        let deadline = deadline.within(PATIENCE);
-        self.send(b"(get-info :version)\n".to_vec(), &deadline);
-        let version = match self.next(&deadline) {
+        let version = match self.next(&deadline.within(PATIENCE)) {
             Next::Reply(reply) => Some(reply.text().to_owned()).filter(|text| text.contains(":version")),
             Next::Ended | Next::Deadline => None,
         };

@@ -10,7 +10,7 @@ use super::dialogue::{ASK, get_value, negate, out_of_memory};
 use super::exchange::Exchange;
 use super::profile::FILE;
 use super::program::Program;
-use super::watchdog::watch_file;
+use super::watchdog;
 use crate::deadline::Deadline;
 use crate::error::Error;
 use crate::session::{Answer, Identity, Options, Session, Size};
@@ -78,8 +78,9 @@ impl OneShot {
 
 /// A file that is removed with this, or by the watchdog. Some programs want the ending.
 pub(super) fn temporary(text: &[u8]) -> std::io::Result<NamedTempFile> {
+    watchdog::begin();
     let mut file = tempfile::Builder::new().prefix("hyperplan-").suffix(".smt2").tempfile()?;
-    watch_file(file.path());
+    watchdog::watch_file(file.path());
     file.write_all(text)?;
     file.write_all(b"(exit)\n")?;
     file.flush()?;

@@ -9,13 +9,14 @@
 
 use std::io::{self, Read, Write};
 use std::path::Path;
-use std::process::{ChildStderr, ChildStdout, Command, ExitStatus, Stdio};
+use std::process::{ChildStderr, ChildStdin, ChildStdout, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender, TrySendError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use process_wrap::std::{ChildWrapper, CommandWrap, ProcessGroup};
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::process::{Pid, WaitId, WaitIdOptions, waitid};
 
 use super::reply::{Reply, Splitter};
@@ -130,6 +131,16 @@ impl Process {
             }
         }
         self.splitter.next()
+    }
+
+    /// What it has said already, which stays to be read.
+    pub(super) fn unread(&mut self) -> impl Iterator<Item = &Reply> {
+        while !self.stuck()
+            && let Ok(chunk) = self.output.try_recv()
+        {
+            self.splitter.feed(&chunk);
+        }
+        self.splitter.replies()
     }
 
     /// Whether it can say nothing more.
@@ -270,6 +281,9 @@ fn keep(
         stdin = child.stdin().take();
         child
     });
+    if let Some(pipe) = &stdin {
+        enlarge(pipe);
+    }
     // If nobody waits for it, the session was given up; on Linux the child dies with this thread.
     if started.send(child).is_err() {
         return;
@@ -287,17 +301,47 @@ fn keep(
     }
 }
 
+/// A larger pipe, so that the solver and we need not take turns. Where that is not allowed the usual one does.
+#[cfg(target_os = "linux")]
+fn enlarge(pipe: &ChildStdin) {
+    let _ = rustix::pipe::fcntl_setpipe_size(pipe, 1 << 20);
+}
+
+#[cfg(not(target_os = "linux"))]
+fn enlarge(_: &ChildStdin) {}
+
+/// Passes on what it says. Some solvers write every word by itself: what ends where no reply does waits a moment for
+/// more.
 fn read_output(mut stdout: ChildStdout, sender: &SyncSender<Vec<u8>>) {
     let mut buffer = vec![0; 1 << 16];
+    let mut filled = 0;
     loop {
-        match stdout.read(&mut buffer) {
-            Ok(0) => return,
-            Ok(count) if sender.send(buffer[..count].to_vec()).is_err() => return,
-            Ok(_) => {}
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            Err(_) => return,
+        let ended = match stdout.read(&mut buffer[filled..]) {
+            Ok(count) => {
+                filled += count;
+                count == 0
+            }
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+            Err(_) => true,
+        };
+        let heard = &buffer[..filled];
+        let whole = ended || filled == buffer.len() || heard.ends_with(b"\n") || heard.ends_with(b")");
+        if !heard.is_empty() && (whole || !says_more(&stdout)) {
+            if sender.send(heard.to_vec()).is_err() {
+                return;
+            }
+            filled = 0;
+        }
+        if ended {
+            return;
         }
     }
+}
+
+/// Whether it says something, or ends, within a moment.
+fn says_more(stdout: &ChildStdout) -> bool {
+    let moment = Timespec { tv_sec: 0, tv_nsec: 1_000_000 };
+    poll(&mut [PollFd::new(stdout, PollFlags::IN)], Some(&moment)).is_ok_and(|ready| ready > 0)
 }
 
 fn read_errors(mut stderr: ChildStderr, tail: &Mutex<Vec<u8>>) {

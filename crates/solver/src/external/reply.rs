@@ -141,6 +141,11 @@ impl Splitter {
         Some(reply)
     }
 
+    /// What was not taken yet.
+    pub(super) fn replies(&self) -> impl Iterator<Item = &Reply> {
+        self.replies.iter()
+    }
+
     pub(super) fn unread(&self) -> usize {
         self.replies.len()
     }

@@ -12,18 +12,25 @@ use std::path::Path;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::{Mutex, PoisonError};
 
-/// The watchdog of this process: not yet started, started, or (`Some(None)`) not to be had.
-static WATCHDOG: Mutex<Option<Option<Watchdog>>> = Mutex::new(None);
+/// The watchdog of this process.
+static WATCHDOG: Mutex<Watchdog> = Mutex::new(Watchdog::NotStarted);
 
-struct Watchdog {
-    pipe: ChildStdin,
-    /// Never waited for: it ends after us.
-    _shell: Child,
+enum Watchdog {
+    /// No solver was started yet.
+    NotStarted,
+    /// It listens.
+    Listening {
+        pipe: ChildStdin,
+        /// Never waited for: it ends after us.
+        _shell: Child,
+    },
+    /// There is no shell, or it was ended by others.
+    Unavailable,
 }
 
-/// Starts the watchdog, unless it was.
+/// Starts the watchdog, unless it was. Who is about to make what it has to see to waits before rather than after.
 pub(super) fn begin() {
-    WATCHDOG.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert_with(start);
+    WATCHDOG.lock().unwrap_or_else(PoisonError::into_inner).begin();
 }
 
 /// A group to be killed with us, as long as this lives.
@@ -54,10 +61,20 @@ pub(super) fn watch_file(path: &Path) {
 
 fn tell(line: &[u8]) {
     let mut watchdog = WATCHDOG.lock().unwrap_or_else(PoisonError::into_inner);
-    let started = watchdog.get_or_insert_with(start);
-    // One write: lines are short enough to be whole. A watchdog that was killed cannot be helped.
-    if started.as_mut().is_some_and(|started| started.pipe.write_all(line).is_err()) {
-        *started = None;
+    watchdog.begin();
+    if let Watchdog::Listening { pipe, .. } = &mut *watchdog
+        // One write: lines are short enough to be whole.
+        && pipe.write_all(line).is_err()
+    {
+        *watchdog = Watchdog::Unavailable;
+    }
+}
+
+impl Watchdog {
+    fn begin(&mut self) {
+        if let Watchdog::NotStarted = self {
+            *self = start().unwrap_or(Watchdog::Unavailable);
+        }
     }
 }
 
@@ -66,5 +83,5 @@ fn start() -> Option<Watchdog> {
     command.args(["-c", include_str!("watchdog.sh"), "hyperplan-watchdog"]).process_group(0).current_dir("/");
     command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null());
     let mut shell = command.spawn().ok()?;
-    Some(Watchdog { pipe: shell.stdin.take()?, _shell: shell })
+    Some(Watchdog::Listening { pipe: shell.stdin.take()?, _shell: shell })
 }
