@@ -19,5 +19,5 @@ pub use deadline::Deadline;
 pub use error::Error;
 #[doc(hidden)]
 pub use external::understand_output;
-pub use external::{Catalog, ConfigError, Found, Install, Profile, discover};
+pub use external::{Catalog, ConfigError, Found, Install, Profile, Standalone, discover, end_with_parent};
 pub use session::{Answer, Identity, Options, Session, Size, Spec, open};

@@ -11,6 +11,7 @@ mod profile;
 mod program;
 mod reply;
 mod sexpr;
+mod standalone;
 mod version;
 mod watchdog;
 
@@ -19,7 +20,9 @@ pub use catalog::{Catalog, ConfigError};
 pub(crate) use dialogue::{open_command, open_profile};
 pub(crate) use discover::for_arithmetic;
 pub use discover::{Found, discover};
+pub use process::end_with_parent;
 pub use profile::{Install, Profile};
 pub(crate) use profile::{profile, that_take};
 #[doc(hidden)]
 pub use reply::understand_output;
+pub use standalone::Standalone;
