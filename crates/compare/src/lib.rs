@@ -1,7 +1,9 @@
 //! Comparisons of solvers: what was run, and what came of it.
 
 mod contest;
+mod html;
 mod judge;
+pub mod plot;
 mod record;
 pub mod report;
 mod score;

@@ -31,16 +31,16 @@ pub fn sheet(scores: &Scores, caption: &str) -> Sheet {
         ("solved", |s| s.solved.to_string(), always),
         ("sat", |s| s.sat.to_string(), always),
         ("unsat", |s| s.unsat.to_string(), always),
-        ("unknown", |s| s.unknown.to_string(), |s| s.unknown > 0),
-        ("timeout", |s| s.timeout.to_string(), |s| s.timeout > 0),
-        ("memout", |s| s.memout.to_string(), |s| s.memout > 0),
-        ("error", |s| s.error.to_string(), |s| s.error > 0),
-        ("unsupported", |s| s.unsupported.to_string(), |s| s.unsupported > 0),
         ("PAR-2", |s| seconds(s.par2), always),
         ("wall", |s| seconds(s.parallel.wall_s), always),
         ("CPU", |s| seconds(s.parallel.cpu_s), always),
         ("unique", |s| s.unique.to_string(), always),
         ("fastest", |s| s.fastest.to_string(), always),
+        ("unknown", |s| s.unknown.to_string(), |s| s.unknown > 0),
+        ("timeout", |s| s.timeout.to_string(), |s| s.timeout > 0),
+        ("memout", |s| s.memout.to_string(), |s| s.memout > 0),
+        ("error", |s| s.error.to_string(), |s| s.error > 0),
+        ("unsupported", |s| s.unsupported.to_string(), |s| s.unsupported > 0),
     ];
     let shown: Vec<&Column> = columns.iter().filter(|column| scores.scores.iter().any(column.2)).collect();
     let head = ["#", "solver"].into_iter().chain(shown.iter().map(|column| column.0));
