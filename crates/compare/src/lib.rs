@@ -1,5 +1,6 @@
 //! Comparisons of solvers: what was run, and what came of it.
 
+pub mod benchexec;
 mod contest;
 mod html;
 mod judge;
