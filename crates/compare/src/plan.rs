@@ -48,6 +48,8 @@ pub struct Candidate {
     pub name: String,
     /// Its version, if it says one.
     pub version: Option<String>,
+    /// Tells builds apart where there is no version.
+    pub stamp: String,
     /// Its program; none for the embedded engine, which reads no SMT-LIB.
     pub standalone: Option<Standalone>,
 }
@@ -142,7 +144,7 @@ impl Run {
     fn digest(&self) -> String {
         let Run { key: _, instance, solver, quantifiers, states, options, seed, repetition, limit } = self;
         let Instance { name, family: _, file, sha256, others, set, horizon: _, kind } = &**instance;
-        let Candidate { name: solver, version, standalone } = &**solver;
+        let Candidate { name: solver, version, stamp, standalone } = &**solver;
         let standalone = standalone.as_ref().map(|standalone| match kind {
             // hyperplan adds arguments by itself.
             Kind::Problem { .. } => (&standalone.program, Vec::new(), None),
@@ -152,7 +154,7 @@ impl Run {
         });
         let own = matches!(kind, Kind::Problem { .. }).then_some(env!("CARGO_PKG_VERSION"));
         let input = (name, sha256, others, set);
-        let solver = (solver, version, standalone, own);
+        let solver = (solver, version, stamp, standalone, own);
         let way = (quantifiers, states, options, seed, repetition, limit);
         hexadecimal(&Sha256::digest(format!("{input:?} {solver:?} {way:?}")))[..32].to_owned()
     }
@@ -216,7 +218,7 @@ mod tests {
     }
 
     fn candidate(name: &str) -> Arc<Candidate> {
-        Arc::new(Candidate { name: name.to_owned(), version: None, standalone: None })
+        Arc::new(Candidate { name: name.to_owned(), version: None, stamp: String::new(), standalone: None })
     }
 
     #[test]
@@ -254,12 +256,13 @@ mod tests {
             run(&|i, _, _| i.others = "0".to_owned()),
             run(&|i, _, _| i.set = vec!["T=3".to_owned()]),
             run(&|_, s, _| s.version = Some("4.0".to_owned())),
+            run(&|_, s, _| s.stamp = "1".to_owned()),
             run(&|_, _, w| w.limit.wall_s = Some(1.0)),
             run(&|_, _, w| w.limit.cpu_s = Some(1.0)),
             run(&|_, _, w| w.limit.memory_mib = Some(1)),
             run(&|_, _, w| w.options = vec!["--no-verify".to_owned()]),
         ]);
-        assert_eq!(keys.len(), 9);
+        assert_eq!(keys.len(), 10);
         // The family is for tables only.
         assert!(!keys.insert(run(&|i, _, _| i.family = "x".to_owned())));
     }

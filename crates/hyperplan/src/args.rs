@@ -308,6 +308,9 @@ pub(crate) struct Compare {
     /// Leaves strategies unchecked
     #[arg(long)]
     pub(crate) no_verify: bool,
+    /// Runs nothing, but writes the same comparison of problem files for BenchExec
+    #[arg(long, value_name = "DIR")]
+    pub(crate) benchexec: Option<PathBuf>,
 }
 
 const COMPARE_HELP: &str = "Every run is written to the log as soon as it has ended. The same command again does only \

@@ -9,9 +9,13 @@ use crate::output::Output;
 use crate::progress::Progress;
 use crate::signals;
 use clap::ValueEnum;
-use hyperplan_compare::plan::{Candidate, Run, Ways, plan};
-use hyperplan_compare::{Event, Limit, Log, LogError, Past, Record, Setting, prepare, run_all};
-use hyperplan_solver::{Error, Spec};
+use hyperplan_compare::benchexec::{Configuration, Problem};
+use hyperplan_compare::plan::{Candidate, Instance, Kind, Run, Ways, plan};
+use hyperplan_compare::report::write_all;
+use hyperplan_compare::{
+    Event, Limit, Log, LogError, Past, Record, Setting, judge, prepare, run_all, summary,
+};
+use hyperplan_solver::{Error, Options, open};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::Path;
@@ -27,6 +31,9 @@ pub(crate) fn run(args: &args::Compare, quiet: bool, out: &mut Output) -> Outcom
     let ways = ways(args)?;
     let solvers = candidates(args.solver.as_deref())?;
     let instances = instances(args, out)?;
+    if let Some(folder) = &args.benchexec {
+        return benchexec(folder, &instances, &solvers, &ways);
+    }
     let runs = plan(&instances, &solvers, &ways);
     if runs.is_empty() {
         return Err(Failure::input("there is nothing to run: the builtin solver reads no SMT-LIB files"));
@@ -140,7 +147,53 @@ fn place(record: &Record) -> impl Ord + use<> {
     ((instance, set, solver), (states, quantifiers, options), (seed, repetition))
 }
 
-fn report(_records: &[Record], _folder: &Path, _out: &mut Output) -> Outcome {
+/// Prints what is wrong and the scores, and writes all reports.
+fn report(records: &[Record], folder: &Path, out: &mut Output) -> Outcome {
+    let summary = summary(records);
+    out.line(summary.trim_end())?;
+    write_all(records, folder).map_err(|error| {
+        Failure::input(format_args!("cannot write the reports in {}: {error}", folder.display()))
+    })?;
+    out.remark(format_args!("note: the whole report is {}", folder.join("report.html").display()));
+    Ok(Status::from_code(judge(records).exit_code()))
+}
+
+/// Writes the same comparison for BenchExec, and runs nothing.
+fn benchexec(folder: &Path, instances: &[Arc<Instance>], solvers: &[Arc<Candidate>], ways: &Ways) -> Outcome {
+    let problems: Vec<Problem> = instances
+        .iter()
+        .filter_map(|instance| match &instance.kind {
+            Kind::Query(_) => None,
+            Kind::Problem { objective } => Some(Problem {
+                file: instance.file.clone().into(),
+                objective: Some(objective.clone()),
+                set: instance.set.clone(),
+                expected: None,
+            }),
+        })
+        .collect();
+    let option = |name: &str, value: &str| (name.to_owned(), value.to_owned());
+    let mut configurations = Vec::new();
+    for solver in solvers {
+        for (quantifiers, states) in
+            ways.quantifiers.iter().flat_map(|q| ways.states.iter().map(move |s| (q.as_str(), s.as_str())))
+        {
+            for seed in &ways.seeds {
+                let name = format!("{}-{quantifiers}-{states}", solver.name);
+                configurations.push(Configuration {
+                    name: if ways.seeds.len() > 1 { format!("{name}-{seed}") } else { name },
+                    options: vec![
+                        option("--solver", &solver.name),
+                        option("--quantifiers", quantifiers),
+                        option("--states", states),
+                        option("--seed", &seed.to_string()),
+                    ],
+                });
+            }
+        }
+    }
+    hyperplan_compare::benchexec::write(folder, &problems, &configurations, &ways.limit)
+        .map_err(|error| Failure::input(format_args!("cannot write {}: {error}", folder.display())))?;
     Ok(Status::Good)
 }
 
@@ -199,11 +252,19 @@ fn candidates(solvers: Option<&str>) -> Outcome<Vec<Arc<Candidate>>> {
             status: if matches!(error, Error::Missing { .. }) { Status::Solver } else { Status::Input },
             message: error.to_string(),
         })?;
-        let version = match (&spec, &standalone) {
-            (Spec::Builtin, _) => Some(env!("CARGO_PKG_VERSION").to_owned()),
-            (_, standalone) => standalone.as_ref().and_then(|standalone| standalone.version.clone()),
+        let version = match &standalone {
+            Some(standalone) => standalone.version.clone(),
+            None => Some(open(&spec, &Options::default()).map_err(Failure::input)?.identity().version),
         };
-        candidates.push(Arc::new(Candidate { name, version, standalone }));
+        let program = standalone.as_ref().filter(|_| version.is_none()).map(|standalone| &standalone.program);
+        let stamp = program.map_or_else(String::new, |program| stamp(program));
+        candidates.push(Arc::new(Candidate { name, version, stamp, standalone }));
     }
     Ok(candidates)
+}
+
+/// The length of a program and when it was written.
+fn stamp(program: &Path) -> String {
+    let data = program.metadata();
+    data.map_or_else(|_| String::new(), |data| format!("{} {:?}", data.len(), data.modified().ok()))
 }
