@@ -6,7 +6,9 @@ mod sample;
 
 use std::time::{Duration, Instant};
 
-use hyperplan_compare::{Answer, Contest, Record, Score, Scores, Status, judge, scores};
+use hyperplan_compare::contest::Contest;
+use hyperplan_compare::score::{Score, Scores, scores};
+use hyperplan_compare::{Answer, Record, Status, judge};
 use sample::{run, sample};
 
 fn score_all(records: &[Record]) -> Scores {
@@ -116,6 +118,18 @@ fn unique_and_virtual_best() {
     let z3 = || run("z3", "a", Status::Sat, 1.0);
     let all = score_all(&[z3(), keep(z3()), run("cvc5", "a", Status::Timeout, 10.0)]);
     assert_eq!((of(&all, "z3 keep").unique, of(&all, "z3 keep").unique_solver), (0, 1));
+}
+
+/// A model that does not satisfy its query is no mere failure to answer.
+#[test]
+fn wrong_models_are_wrong() {
+    let model = Record {
+        message: Some("solver z3 gave a wrong model: p is no path".to_owned()),
+        ..run("z3", "a", Status::Error, 1.0)
+    };
+    let crash = Record { message: Some("z3 ended".to_owned()), ..run("z3", "b", Status::Error, 1.0) };
+    let all = score_all(&[model, crash]);
+    assert_eq!((of(&all, "z3").wrong, of(&all, "z3").error, of(&all, "z3").parallel.errors), (1, 1, 1));
 }
 
 #[test]
