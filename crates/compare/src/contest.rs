@@ -62,20 +62,15 @@ pub struct Contest<'a> {
     pub disputed: Vec<bool>,
 }
 
-/// What tells contestants apart. Where only one version of a solver occurs, runs that do not know theirs (it crashed,
-/// say) belong to it.
+/// What tells contestants apart: solver, quantifiers, states, version, options.
 type Identity<'a> = (&'a str, Option<&'a str>, Option<&'a str>, Option<&'a str>, &'a str);
 
 impl<'a> Contest<'a> {
     /// Sorts the records.
     pub fn new(records: &'a [Record]) -> Self {
-        let mut versions: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
-        for record in records {
-            versions.entry(&record.solver).or_default().extend(record.version.as_deref());
-        }
+        let versions = Versions::new(records);
         let identity = |record: &'a Record| -> Identity<'a> {
-            let known = &versions[record.solver.as_str()];
-            let version = if known.len() == 1 { known.first().copied() } else { record.version.as_deref() };
+            let version = versions.of(record);
             (
                 &record.solver,
                 record.quantifiers.as_deref(),
@@ -186,6 +181,42 @@ impl<'a> Cell<'a> {
     pub fn counts(&self) -> bool {
         self.median.status != Status::Unsupported
     }
+}
+
+/// The versions of each solver, as far as runs said them. One that crashed says none, another no more than the beginning; where
+/// it can be only one, that is meant.
+struct Versions<'a>(BTreeMap<&'a str, BTreeSet<&'a str>>);
+
+impl<'a> Versions<'a> {
+    fn new(records: &'a [Record]) -> Self {
+        let mut versions: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+        for record in records {
+            versions.entry(&record.solver).or_default().extend(record.version.as_deref());
+        }
+        for known in versions.values_mut() {
+            let full = |version: &&str| !known.iter().any(|other| is_beginning(version, other));
+            *known = known.iter().copied().filter(full).collect();
+        }
+        Self(versions)
+    }
+
+    fn of(&self, record: &'a Record) -> Option<&'a str> {
+        let said = record.version.as_deref();
+        let known = self.0.get(record.solver.as_str())?;
+        let mut meant = known.iter().copied().filter(|full| match said {
+            Some(version) => version == *full || is_beginning(version, full),
+            None => true,
+        });
+        match (meant.next(), meant.next()) {
+            (Some(version), None) => Some(version),
+            _ => said,
+        }
+    }
+}
+
+/// Whether a version is the same with less said: `1.0` of `1.0 (a build)`.
+fn is_beginning(version: &str, other: &str) -> bool {
+    other.strip_prefix(version).is_some_and(|rest| rest.starts_with(' '))
 }
 
 /// What a run says, whether or not it is right.

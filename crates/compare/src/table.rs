@@ -36,7 +36,7 @@ pub fn sheet(scores: &Scores, caption: &str) -> Sheet {
         ("solved", |s| s.solved.to_string(), always),
         ("sat", |s| s.sat.to_string(), always),
         ("unsat", |s| s.unsat.to_string(), always),
-        ("PAR-2", |s| seconds(s.par2), always),
+        ("PAR-2", |s| if s.counted > 0 { seconds(s.par2) } else { String::new() }, always),
         ("wall", |s| seconds(s.parallel.wall_s), always),
         ("CPU", |s| seconds(s.parallel.cpu_s), always),
         ("unique", |s| s.unique.to_string(), always),
@@ -149,6 +149,9 @@ pub(crate) fn notes(contest: &Contest<'_>, scores: &Scores) -> Vec<String> {
     }
     if scores.scores.iter().any(|score| score.unsupported > 0) {
         notes.push("What a solver does not support is not counted.".to_owned());
+    }
+    if scores.scores.iter().any(|score| score.counted != scores.best.counted) {
+        notes.push("Not everyone was counted on every instance: compare with care.".to_owned());
     }
     if scores.repetitions > 1 {
         notes.push(format!(

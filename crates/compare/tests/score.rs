@@ -142,6 +142,10 @@ fn versions_tell_contestants_apart() {
         Contest::new(records).contestants.into_iter().map(|contestant| contestant.label).collect()
     };
     assert_eq!(labels(&[version(Some("1"), "a"), version(None, "b")]), ["z3"]);
+    assert_eq!(labels(&[version(Some("1"), "a"), version(Some("1 (a build)"), "b")]), ["z3"]);
+    assert_eq!(labels(&[version(Some("1"), "a"), version(Some("10"), "b")]), ["z3 1", "z3 10"]);
+    let builds = ["1", "1 (a)", "1 (b)"].map(|text| version(Some(text), "a"));
+    assert_eq!(labels(&builds), ["z3 1", "z3 1 (a)", "z3 1 (b)"]);
     assert_eq!(labels(&[version(Some("1"), "a"), version(Some("2"), "a")]), ["z3 1", "z3 2"]);
 }
 

@@ -31,7 +31,7 @@ impl Kind {
         match self {
             Self::Sat => "sat",
             Self::Unsat => "unsat",
-            Self::Unsolved => "not solved by both",
+            Self::Unsolved => "unsolved by one or both",
         }
     }
 
