@@ -62,20 +62,15 @@ pub struct Contest<'a> {
     pub disputed: Vec<bool>,
 }
 
-/// What tells contestants apart. Where only one version of a solver occurs, runs that do not know theirs (it crashed,
-/// say) belong to it.
+/// What tells contestants apart: solver, quantifiers, states, version, options.
 type Identity<'a> = (&'a str, Option<&'a str>, Option<&'a str>, Option<&'a str>, &'a str);
 
 impl<'a> Contest<'a> {
     /// Sorts the records.
     pub fn new(records: &'a [Record]) -> Self {
-        let mut versions: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
-        for record in records {
-            versions.entry(&record.solver).or_default().extend(record.version.as_deref());
-        }
+        let versions = Versions::new(records);
         let identity = |record: &'a Record| -> Identity<'a> {
-            let known = &versions[record.solver.as_str()];
-            let version = if known.len() == 1 { known.first().copied() } else { record.version.as_deref() };
+            let version = versions.of(record);
             (
                 &record.solver,
                 record.quantifiers.as_deref(),
@@ -110,6 +105,24 @@ impl<'a> Contest<'a> {
             );
         }
         contest
+    }
+
+    /// The answer to an instance, in a word: the one that is known to be right, or was given, or that nobody knows.
+    pub fn answer(&self, instance: usize) -> String {
+        let given = || self.cells[instance].iter().flatten().find_map(Cell::solved);
+        match (self.disputed[instance], self.truth[instance].or_else(given)) {
+            (true, _) => "disputed".to_owned(),
+            (false, Some(answer)) => answer.to_string(),
+            (false, None) => "unknown".to_owned(),
+        }
+    }
+
+    /// The one contestant that solved an instance, if it was only one.
+    pub fn only(&self, instance: usize) -> Option<usize> {
+        let row = self.cells[instance].iter().enumerate();
+        let mut solved = row.filter(|(_, cell)| cell.as_ref().is_some_and(|cell| cell.solved().is_some()));
+        let (first, _) = solved.next()?;
+        solved.next().is_none().then_some(first)
     }
 
     /// The cells of one contestant, with the number of the instance.
@@ -159,10 +172,51 @@ impl<'a> Cell<'a> {
         answer(self.median).filter(|_| !self.wrong)
     }
 
+    /// What the median run says, wrong or not.
+    pub fn says(&self) -> Option<Answer> {
+        answer(self.median)
+    }
+
     /// Whether it counts: what a contestant does not support is not held against it.
     pub fn counts(&self) -> bool {
         self.median.status != Status::Unsupported
     }
+}
+
+/// The versions of each solver, as far as runs said them. One that crashed says none, another no more than the beginning; where
+/// it can be only one, that is meant.
+struct Versions<'a>(BTreeMap<&'a str, BTreeSet<&'a str>>);
+
+impl<'a> Versions<'a> {
+    fn new(records: &'a [Record]) -> Self {
+        let mut versions: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+        for record in records {
+            versions.entry(&record.solver).or_default().extend(record.version.as_deref());
+        }
+        for known in versions.values_mut() {
+            let full = |version: &&str| !known.iter().any(|other| is_beginning(version, other));
+            *known = known.iter().copied().filter(full).collect();
+        }
+        Self(versions)
+    }
+
+    fn of(&self, record: &'a Record) -> Option<&'a str> {
+        let said = record.version.as_deref();
+        let known = self.0.get(record.solver.as_str())?;
+        let mut meant = known.iter().copied().filter(|full| match said {
+            Some(version) => version == *full || is_beginning(version, full),
+            None => true,
+        });
+        match (meant.next(), meant.next()) {
+            (Some(version), None) => Some(version),
+            _ => said,
+        }
+    }
+}
+
+/// Whether a version is the same with less said: `1.0` of `1.0 (a build)`.
+fn is_beginning(version: &str, other: &str) -> bool {
+    other.strip_prefix(version).is_some_and(|rest| rest.starts_with(' '))
 }
 
 /// What a run says, whether or not it is right.
@@ -179,9 +233,30 @@ pub(crate) fn is_refuted(run: &Record) -> bool {
     run.verified.as_deref() == Some("refuted")
 }
 
+/// Whether an SMT-LIB file was run.
+pub(crate) fn is_query(record: &Record) -> bool {
+    record.quantifiers.is_none() && record.states.is_none()
+}
+
+/// Whether the model fails, which is the solver's fault. Of a query it is the solver that is checked; hyperplan itself tells a
+/// model that does not satisfy its query (exit status 4) from a strategy that its own checker refutes (5).
+pub(crate) fn is_wrong_model(record: &Record) -> bool {
+    let blamed = record.exit_code == Some(4) || is_query(record);
+    is_refuted(record) && blamed
+        || record.status == Status::Error
+            && record.message.as_deref().is_some_and(|message| message.contains("wrong model"))
+}
+
+/// Whether the strategy fails though nobody blames the model.
+pub(crate) fn is_refuted_strategy(record: &Record) -> bool {
+    !is_query(record) && !is_wrong_model(record) && (is_refuted(record) || record.exit_code == Some(5))
+}
+
 /// Whether it is known that a run's answer is wrong.
 fn is_wrong(run: &Record, truth: Option<Answer>) -> bool {
-    is_refuted(run) || truth.is_some() && answer(run).is_some_and(|answer| Some(answer) != truth)
+    is_wrong_model(run)
+        || is_refuted_strategy(run)
+        || truth.is_some() && answer(run).is_some_and(|answer| Some(answer) != truth)
 }
 
 /// Whether an answer came with a witness that was checked without any solver.

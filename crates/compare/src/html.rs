@@ -8,7 +8,7 @@ use std::io;
 use askama::Template;
 use serde::Serialize;
 
-use crate::contest::{Cell, Contest, is_certified};
+use crate::contest::{Cell, Contest, Instance, is_certified};
 use crate::judge::{Claim, Finding, Judgement};
 use crate::plot::{self, Kind, Scatter};
 use crate::score::Scores;
@@ -211,7 +211,7 @@ fn scores_grid(sheet: &Sheet, id: &str, caption: &str) -> Grid {
         id: id.to_owned(),
         caption: caption.to_owned(),
         head: sheet.head.clone(),
-        text: (0..sheet.head.len()).map(|i| i == 1).collect(),
+        text: sheet.text.clone(),
         rows: rows.collect(),
     }
 }
@@ -219,18 +219,18 @@ fn scores_grid(sheet: &Sheet, id: &str, caption: &str) -> Grid {
 /// The instances with what each contestant made of them, best contestant first.
 fn instances(contest: &Contest<'_>, order: &[usize], link: &impl Fn(&str) -> String) -> Grid {
     let names = order.iter().map(|&c| contest.contestants[c].label.clone());
-    let row = |(i, instance): (usize, &crate::Instance)| {
-        let answer = match (contest.truth[i], contest.disputed[i]) {
-            (_, true) => GridCell { text: "✗ disputed".to_owned(), bad: true, ..GridCell::default() },
-            (Some(answer), false) => GridCell { text: answer.to_string(), ..GridCell::default() },
-            (None, false) => GridCell { text: said(&contest.cells[i]), ..GridCell::default() },
-        };
+    let row = |(i, instance): (usize, &Instance)| {
+        let disputed = contest.disputed[i];
+        let mark = if disputed { "✗ " } else { "" };
+        let answer =
+            GridCell { text: format!("{mark}{}", contest.answer(i)), bad: disputed, ..GridCell::default() };
         let name = GridCell {
             text: instance.label.clone(),
             title: Some(format!("sha256 {}", instance.sha256)),
             ..GridCell::default()
         };
-        let cells = order.iter().map(|&c| result(contest.cells[i][c].as_ref(), link));
+        let only = contest.only(i).filter(|_| order.len() > 1);
+        let cells = order.iter().map(|&c| result(contest.cells[i][c].as_ref(), only == Some(c), link));
         GridRow { cells: [name, answer].into_iter().chain(cells).collect(), last: false }
     };
     Grid {
@@ -242,23 +242,17 @@ fn instances(contest: &Contest<'_>, order: &[usize], link: &impl Fn(&str) -> Str
     }
 }
 
-/// The answer that was given, though nothing vouches for it.
-fn said(row: &[Option<Cell<'_>>]) -> String {
-    let answer = row.iter().flatten().find_map(Cell::solved);
-    answer.map_or_else(|| "unknown".to_owned(), |answer| answer.to_string())
-}
-
-fn result(cell: Option<&Cell<'_>>, link: &impl Fn(&str) -> String) -> GridCell {
+fn result(cell: Option<&Cell<'_>>, only: bool, link: &impl Fn(&str) -> String) -> GridCell {
     let Some(cell) = cell else { return GridCell::default() };
-    let run = cell.median;
-    let text = match (cell.wrong, cell.solved()) {
-        (true, _) => format!("✗ {} wrong", plot::status(run.status)),
-        (false, Some(_)) => seconds(run.wall_s),
-        (false, None) => plot::status(run.status).to_owned(),
+    let mark = match (cell.wrong, only) {
+        (true, _) => "✗ ",
+        (false, true) => "★ ",
+        (false, false) => "",
     };
+    let wall_s = cell.median.wall_s;
     GridCell {
-        text,
-        key: (cell.solved().is_some() && run.wall_s.is_finite()).then_some(run.wall_s),
+        text: format!("{mark}{}", table::result(cell)),
+        key: (cell.solved().is_some() && wall_s.is_finite()).then_some(wall_s),
         title: Some(details(cell)),
         href: cell.runs.iter().find_map(|run| run.queries.as_deref()).map(link),
         bad: cell.wrong,
@@ -270,7 +264,7 @@ fn details(cell: &Cell<'_>) -> String {
     let run: &Record = cell.median;
     let mut text = format!(
         "{}, wall {} s, CPU {} s, {:.0} MiB",
-        plot::status(run.status),
+        run.status,
         seconds(run.wall_s),
         seconds(run.cpu_s),
         run.memory_mib

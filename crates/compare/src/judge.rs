@@ -5,7 +5,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::contest::{Contest, answer, is_refuted};
+use crate::contest::{Contest, answer, is_query, is_refuted, is_refuted_strategy, is_wrong_model};
 use crate::{Answer, Record, Status};
 
 /// What is wrong.
@@ -164,8 +164,7 @@ impl<'a> Instance<'a> {
         Some(self.finding(kind, self.fault(&wrong), claims(&said)))
     }
 
-    /// What a failed witness of one kind comes to. A query's model is the solver's; hyperplan itself tells a model that does not
-    /// satisfy its query (exit status 4) from a strategy that its own checker refutes (5).
+    /// What failed witnesses of one kind come to.
     fn witnesses(&self, kind: Kind, is: fn(&Record) -> bool, fault: Fault) -> Option<Finding> {
         let failed: Vec<&Run<'_>> = self.runs.iter().filter(|run| is(run.record)).collect();
         (!failed.is_empty()).then(|| self.finding(kind, fault, claims(&failed)))
@@ -196,21 +195,6 @@ fn asked(record: &Record) -> (Option<&str>, Option<&str>, &str) {
     (record.quantifiers.as_deref(), record.states.as_deref(), &record.options)
 }
 
-fn is_query(record: &Record) -> bool {
-    record.quantifiers.is_none() && record.states.is_none()
-}
-
-fn is_wrong_model(record: &Record) -> bool {
-    let blamed = record.exit_code == Some(4) || is_query(record);
-    is_refuted(record) && blamed
-        || record.status == Status::Error
-            && record.message.as_deref().is_some_and(|message| message.contains("wrong model"))
-}
-
-fn is_refuted_strategy(record: &Record) -> bool {
-    !is_query(record) && !is_wrong_model(record) && (is_refuted(record) || record.exit_code == Some(5))
-}
-
 /// Runs of one contestant that say the same, as one claim.
 fn claims(runs: &[&Run<'_>]) -> Vec<Claim> {
     let mut found: BTreeMap<(Option<Answer>, &str, Option<&str>), Claim> = BTreeMap::new();
@@ -237,6 +221,20 @@ impl fmt::Display for Answer {
         f.write_str(match self {
             Answer::Sat => "sat",
             Answer::Unsat => "unsat",
+        })
+    }
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Status::Sat => "sat",
+            Status::Unsat => "unsat",
+            Status::Unknown => "unknown",
+            Status::Timeout => "timeout",
+            Status::Memout => "memout",
+            Status::Error => "error",
+            Status::Unsupported => "unsupported",
         })
     }
 }

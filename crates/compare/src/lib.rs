@@ -5,7 +5,7 @@
 //! tables and plots.
 
 pub mod benchexec;
-mod contest;
+pub mod contest;
 mod html;
 mod judge;
 mod log;
@@ -16,21 +16,21 @@ mod pool;
 mod query;
 mod record;
 pub mod report;
-mod score;
+pub mod score;
 mod supervise;
 pub mod table;
 mod tree;
 
-pub use contest::{Cell, Contest, Contestant, Instance};
 pub use judge::{Claim, Fault, Finding, Judgement, Kind, judge};
 pub use log::{Log, LogError, Past};
 pub use pool::{Event, Setting, prepare, run_all};
 pub use query::Query;
 pub use record::{Answer, Limit, Record, Status};
-pub use score::{Parallel, Score, Scores, Sequential, scores};
 pub use supervise::supervise;
 
-/// What a terminal shows of a comparison: what is wrong, then the scores.
+use contest::Contest;
+
+/// What a terminal shows of a comparison: what is wrong, the results if they are few, the scores.
 pub fn summary(records: &[Record]) -> String {
     let contest = Contest::new(records);
     table::summary(&contest, &judge::judge_contest(&contest))

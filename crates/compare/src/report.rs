@@ -21,7 +21,7 @@ struct Outcome<'a> {
 }
 
 /// Writes all reports into a folder, which is made if need be, and returns what was written: `report.html`, `runs.csv`,
-/// `runs.json`, `scores.json`, `table.md`, `table.tex`, `cactus.svg`, and `scatter-A-B.svg` for each two of the best contestants.
+/// `runs.json`, `scores.json`, `table.md`, `table.tex`, `instances.md`, `instances.tex`, `cactus.svg`, and `scatter-A-B.svg` for each two of the best contestants.
 /// The folder is that of the log, as far as links to queries are concerned.
 pub fn write_all(records: &[Record], dir: &Path) -> io::Result<Vec<PathBuf>> {
     write_all_from(records, dir, "")
@@ -34,6 +34,7 @@ pub fn write_all_from(records: &[Record], dir: &Path, log: &str) -> io::Result<V
     let judgement = judge_contest(&contest);
     let scores = scores(&contest, |_| true);
     let sheets = table::sheets(&contest);
+    let instances = table::instances(&contest, &scores);
     let mut csv = Vec::new();
     table::csv(records, &mut csv)?;
     let mut files = vec![
@@ -41,6 +42,8 @@ pub fn write_all_from(records: &[Record], dir: &Path, log: &str) -> io::Result<V
         ("runs.csv".to_owned(), csv),
         ("runs.json".to_owned(), json(&records)?),
         ("scores.json".to_owned(), json(&Outcome { judgement: &judgement, scores: &scores })?),
+        ("instances.md".to_owned(), table::markdown(&instances).into_bytes()),
+        ("instances.tex".to_owned(), latex(std::slice::from_ref(&instances)).into_bytes()),
         ("table.md".to_owned(), markdown(&sheets).into_bytes()),
         ("table.tex".to_owned(), latex(&sheets).into_bytes()),
         ("cactus.svg".to_owned(), plot::cactus(&contest, &scores).into_bytes()),

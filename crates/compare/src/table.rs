@@ -5,18 +5,20 @@ use std::io;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use serde::Serialize;
 
-use crate::contest::Contest;
+use crate::contest::{Cell, Contest};
 use crate::judge::Judgement;
 use crate::score::{Score, Scores, scores};
 use crate::{Answer, Record, Status};
 
-/// Names of columns and the rows below, the first column being text and the others numbers.
+/// Names of columns and the rows below.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sheet {
     /// What stands above.
     pub caption: String,
     /// The names.
     pub head: Vec<String>,
+    /// Which columns are text, and set to the left.
+    pub text: Vec<bool>,
     /// The rows.
     pub rows: Vec<Vec<String>>,
 }
@@ -25,24 +27,34 @@ pub struct Sheet {
 pub fn sheet(scores: &Scores, caption: &str) -> Sheet {
     type Column = (&'static str, fn(&Score) -> String, fn(&Score) -> bool);
     let always: fn(&Score) -> bool = |_| true;
-    let columns: [Column; 15] = [
+    // Where a solver takes part in several ways, these share what it alone solves.
+    let several = scores.scores.iter().any(|score| score.unique_solver != score.unique);
+    let parallel = scores.scores.iter().all(|score| score.rank == score.sequential_rank);
+    let columns: [Column; 17] = [
         ("counted", |s| s.counted.to_string(), always),
         ("wrong", |s| s.wrong.to_string(), |s| s.wrong > 0),
         ("solved", |s| s.solved.to_string(), always),
         ("sat", |s| s.sat.to_string(), always),
         ("unsat", |s| s.unsat.to_string(), always),
-        ("PAR-2", |s| seconds(s.par2), always),
+        ("PAR-2", |s| if s.counted > 0 { seconds(s.par2) } else { String::new() }, always),
         ("wall", |s| seconds(s.parallel.wall_s), always),
         ("CPU", |s| seconds(s.parallel.cpu_s), always),
         ("unique", |s| s.unique.to_string(), always),
+        (SOLVER_UNIQUE, |s| s.unique_solver.to_string(), always),
         ("fastest", |s| s.fastest.to_string(), always),
+        (SEQUENTIAL, |s| s.sequential_rank.to_string(), always),
         ("unknown", |s| s.unknown.to_string(), |s| s.unknown > 0),
         ("timeout", |s| s.timeout.to_string(), |s| s.timeout > 0),
         ("memout", |s| s.memout.to_string(), |s| s.memout > 0),
         ("error", |s| s.error.to_string(), |s| s.error > 0),
         ("unsupported", |s| s.unsupported.to_string(), |s| s.unsupported > 0),
     ];
-    let shown: Vec<&Column> = columns.iter().filter(|column| scores.scores.iter().any(column.2)).collect();
+    let wanted = |column: &&Column| match column.0 {
+        SOLVER_UNIQUE => several,
+        SEQUENTIAL => !parallel,
+        _ => scores.scores.iter().any(column.2),
+    };
+    let shown: Vec<&Column> = columns.iter().filter(wanted).collect();
     let head = ["#", "solver"].into_iter().chain(shown.iter().map(|column| column.0));
     let order = scores.order();
     let ranked = order.iter().map(|&i| (scores.scores[i].rank.to_string(), &scores.scores[i]));
@@ -50,7 +62,7 @@ pub fn sheet(scores: &Scores, caption: &str) -> Sheet {
     let row = |(rank, score): (String, &Score)| {
         let virtual_best = rank.is_empty();
         let cells = shown.iter().map(|column| match column.0 {
-            "unique" | "fastest" if virtual_best => String::new(),
+            "unique" | SOLVER_UNIQUE | "fastest" | SEQUENTIAL if virtual_best => String::new(),
             _ => column.1(score),
         });
         [rank, score.contestant.clone()].into_iter().chain(cells).collect()
@@ -58,7 +70,37 @@ pub fn sheet(scores: &Scores, caption: &str) -> Sheet {
     Sheet {
         caption: caption.to_owned(),
         head: head.map(str::to_owned).collect(),
+        text: (0..shown.len() + 2).map(|i| i == 1).collect(),
         rows: ranked.chain(best).map(row).collect(),
+    }
+}
+
+const SOLVER_UNIQUE: &str = "solver unique";
+const SEQUENTIAL: &str = "seq. #";
+
+/// The instances with what each contestant made of them, best contestant first: seconds, or what happened else.
+pub fn instances(contest: &Contest<'_>, scores: &Scores) -> Sheet {
+    let order = scores.order();
+    let names = order.iter().map(|&c| contest.contestants[c].label.clone());
+    let row = |i: usize| {
+        let results = order.iter().map(|&c| contest.cells[i][c].as_ref().map_or_else(String::new, result));
+        [contest.instances[i].label.clone(), contest.answer(i)].into_iter().chain(results).collect()
+    };
+    Sheet {
+        caption: "instances".to_owned(),
+        head: ["instance", "answer"].map(str::to_owned).into_iter().chain(names).collect(),
+        text: [true, true].into_iter().chain(order.iter().map(|_| false)).collect(),
+        rows: (0..contest.instances.len()).map(row).collect(),
+    }
+}
+
+/// A cell in a word.
+pub(crate) fn result(cell: &Cell<'_>) -> String {
+    match (cell.wrong, cell.solved()) {
+        (true, _) if cell.says().is_some() => format!("{} wrong", cell.median.status),
+        (true, _) => "wrong".to_owned(),
+        (false, Some(_)) => seconds(cell.median.wall_s),
+        (false, None) => cell.median.status.to_string(),
     }
 }
 
@@ -95,8 +137,21 @@ pub(crate) fn notes(contest: &Contest<'_>, scores: &Scores) -> Vec<String> {
         ),
         "Wall, CPU: seconds in all, of what was solved.".to_owned(),
     ];
+    if scores.scores.iter().any(|score| score.rank != score.sequential_rank) {
+        notes.push(format!(
+            "{SEQUENTIAL}: the place by CPU time, which is limited like wall time (SMT-COMP's sequential score)."
+        ));
+    }
+    if scores.scores.iter().any(|score| score.unique != score.unique_solver) {
+        notes.push(format!(
+            "Unique: solved by no other; {SOLVER_UNIQUE}: by no other solver, in whatever configuration."
+        ));
+    }
     if scores.scores.iter().any(|score| score.unsupported > 0) {
         notes.push("What a solver does not support is not counted.".to_owned());
+    }
+    if scores.scores.iter().any(|score| score.counted != scores.best.counted) {
+        notes.push("Not everyone was counted on every instance: compare with care.".to_owned());
     }
     if scores.repetitions > 1 {
         notes.push(format!(
@@ -114,7 +169,10 @@ pub(crate) fn notes(contest: &Contest<'_>, scores: &Scores) -> Vec<String> {
     notes
 }
 
-/// The table for a terminal, after what is wrong.
+/// So many instances are listed on a terminal.
+const FEW: usize = 40;
+
+/// The tables for a terminal, after what is wrong.
 pub(crate) fn summary(contest: &Contest<'_>, judgement: &Judgement) -> String {
     if contest.instances.is_empty() {
         return "no runs\n".to_owned();
@@ -122,6 +180,10 @@ pub(crate) fn summary(contest: &Contest<'_>, judgement: &Judgement) -> String {
     let all = scores(contest, |_| true);
     let mut text = judgement.to_string();
     if !text.is_empty() {
+        text.push('\n');
+    }
+    if contest.instances.len() <= FEW {
+        text.push_str(&terminal(&instances(contest, &all)));
         text.push('\n');
     }
     text.push_str(&terminal(&sheet(&all, "all")));
@@ -140,7 +202,7 @@ pub fn terminal(sheet: &Sheet) -> String {
     table.set_header(&sheet.head).add_rows(&sheet.rows);
     for (i, column) in table.column_iter_mut().enumerate() {
         column.set_padding((0, 2));
-        if i != 1 {
+        if !sheet.text[i] {
             column.set_cell_alignment(CellAlignment::Right);
         }
     }
@@ -153,7 +215,7 @@ pub fn markdown(sheet: &Sheet) -> String {
         let cells: Vec<String> = cells.iter().map(|cell| markdown_text(cell)).collect();
         format!("| {} |\n", cells.join(" | "))
     };
-    let rule: Vec<&str> = (0..sheet.head.len()).map(|i| if i == 1 { "---" } else { "---:" }).collect();
+    let rule: Vec<&str> = sheet.text.iter().map(|text| if *text { "---" } else { "---:" }).collect();
     let mut text = format!("{}| {} |\n", line(&sheet.head), rule.join(" | "));
     text.extend(sheet.rows.iter().map(|row| line(row)));
     text
@@ -180,7 +242,7 @@ pub fn latex(sheet: &Sheet) -> String {
         let cells: Vec<String> = cells.iter().map(|cell| latex_text(cell)).collect();
         format!("  {} \\\\\n", cells.join(" & "))
     };
-    let columns: String = (0..sheet.head.len()).map(|i| if i == 1 { 'l' } else { 'r' }).collect();
+    let columns: String = sheet.text.iter().map(|text| if *text { 'l' } else { 'r' }).collect();
     let mut text =
         format!("\\begin{{tabular}}{{{columns}}}\n  \\toprule\n{}  \\midrule\n", line(&sheet.head));
     for row in &sheet.rows {
@@ -204,7 +266,8 @@ fn latex_text(text: &str) -> String {
             '^' => escaped.push_str(r"\textasciicircum{}"),
             '<' => escaped.push_str(r"\textless{}"),
             '>' => escaped.push_str(r"\textgreater{}"),
-            '-' => escaped.push_str("{-}"),
+            // Two would become a dash.
+            '-' if escaped.ends_with('-') => escaped.push_str("{}-"),
             '\n' | '\r' => escaped.push(' '),
             _ => escaped.push(c),
         }

@@ -6,7 +6,9 @@ mod sample;
 
 use std::time::{Duration, Instant};
 
-use hyperplan_compare::{Answer, Contest, Record, Score, Scores, Status, judge, scores};
+use hyperplan_compare::contest::Contest;
+use hyperplan_compare::score::{Score, Scores, scores};
+use hyperplan_compare::{Answer, Record, Status, judge};
 use sample::{run, sample};
 
 fn score_all(records: &[Record]) -> Scores {
@@ -118,6 +120,18 @@ fn unique_and_virtual_best() {
     assert_eq!((of(&all, "z3 keep").unique, of(&all, "z3 keep").unique_solver), (0, 1));
 }
 
+/// A model that does not satisfy its query is no mere failure to answer.
+#[test]
+fn wrong_models_are_wrong() {
+    let model = Record {
+        message: Some("solver z3 gave a wrong model: p is no path".to_owned()),
+        ..run("z3", "a", Status::Error, 1.0)
+    };
+    let crash = Record { message: Some("z3 ended".to_owned()), ..run("z3", "b", Status::Error, 1.0) };
+    let all = score_all(&[model, crash]);
+    assert_eq!((of(&all, "z3").wrong, of(&all, "z3").error, of(&all, "z3").parallel.errors), (1, 1, 1));
+}
+
 #[test]
 fn versions_tell_contestants_apart() {
     let version = |version: Option<&str>, instance| Record {
@@ -128,6 +142,10 @@ fn versions_tell_contestants_apart() {
         Contest::new(records).contestants.into_iter().map(|contestant| contestant.label).collect()
     };
     assert_eq!(labels(&[version(Some("1"), "a"), version(None, "b")]), ["z3"]);
+    assert_eq!(labels(&[version(Some("1"), "a"), version(Some("1 (a build)"), "b")]), ["z3"]);
+    assert_eq!(labels(&[version(Some("1"), "a"), version(Some("10"), "b")]), ["z3 1", "z3 10"]);
+    let builds = ["1", "1 (a)", "1 (b)"].map(|text| version(Some(text), "a"));
+    assert_eq!(labels(&builds), ["z3 1", "z3 1 (a)", "z3 1 (b)"]);
     assert_eq!(labels(&[version(Some("1"), "a"), version(Some("2"), "a")]), ["z3 1", "z3 2"]);
 }
 

@@ -22,7 +22,7 @@ fn golden(name: &str, actual: &str) {
 fn files() {
     let dir = tempfile::tempdir().expect("a temporary folder");
     let written = write_all(&sample(), dir.path()).expect("a folder that can be written");
-    for name in ["runs.csv", "table.md", "table.tex", "scores.json"] {
+    for name in ["runs.csv", "table.md", "table.tex", "instances.md", "instances.tex", "scores.json"] {
         let path = dir.path().join(name);
         assert!(written.contains(&path), "{name}");
         golden(name, &fs::read_to_string(path).expect("what was written can be read"));

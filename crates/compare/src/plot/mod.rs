@@ -11,7 +11,7 @@ use crate::contest::Contest;
 
 pub use cactus::cactus;
 pub use scatter::scatter;
-pub(crate) use scatter::{Kind, Scatter, status, words};
+pub(crate) use scatter::{Kind, Scatter, words};
 
 /// Okabe and Ito's colors, which are told apart without full color vision, but for their yellow, which is too faint
 /// for a line on white.

@@ -31,7 +31,7 @@ impl Kind {
         match self {
             Self::Sat => "sat",
             Self::Unsat => "unsat",
-            Self::Unsolved => "not solved by both",
+            Self::Unsolved => "unsolved by one or both",
         }
     }
 
@@ -92,20 +92,7 @@ pub(crate) fn words(cell: &Cell<'_>) -> String {
     match (cell.solved(), cell.wrong) {
         (_, true) => "wrong".to_owned(),
         (Some(_), false) => format!("{} s", seconds(cell.median.wall_s)),
-        (None, false) => status(cell.median.status).to_owned(),
-    }
-}
-
-/// A status in words.
-pub(crate) fn status(status: Status) -> &'static str {
-    match status {
-        Status::Sat => "sat",
-        Status::Unsat => "unsat",
-        Status::Unknown => "unknown",
-        Status::Timeout => "timeout",
-        Status::Memout => "memout",
-        Status::Error => "error",
-        Status::Unsupported => "unsupported",
+        (None, false) => cell.median.status.to_string(),
     }
 }
 
