@@ -161,7 +161,9 @@ impl<'a> Instance<'a> {
             Some(_) => said.iter().copied().filter(|run| answer(run.record) != self.truth).collect(),
             None => said.clone(),
         };
-        Some(self.finding(kind, self.fault(&wrong), claims(&said)))
+        let mut finding = self.finding(kind, self.fault(&wrong), claims(&said));
+        finding.claims.sort_by_key(|claim| self.truth.is_some() && claim.answer == self.truth);
+        Some(finding)
     }
 
     /// What failed witnesses of one kind come to.

@@ -47,6 +47,7 @@ pub(crate) fn run(solver: &str, instance: &str, status: Status, wall_s: f64) -> 
 
 /// A comparison with something of everything: two families, two configurations of a solver, all kinds of status, a
 /// wrong model, an answer against the known status, names that want to be escaped.
+#[allow(dead_code, reason = "not every test wants all of it")]
 pub(crate) fn sample() -> Vec<Record> {
     let mut records = Vec::new();
     let mut add = |instance: &str, runs: [(Status, f64); 4]| {
