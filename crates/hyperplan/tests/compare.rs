@@ -30,7 +30,11 @@ fn solvers_and_encodings_over_a_problem() {
         let status = if record["set"][0] == "T=1" { "unsat" } else { "sat" };
         assert_eq!(record["status"], status, "{record}");
         assert_eq!(record["verified"].as_str(), (status == "sat").then_some("by-search"), "{record}");
-        assert_eq!(record["quantifiers"], record["quantifiers_used"], "{record}");
+        // What has no alternation is one query either way.
+        assert!(
+            ["cegis", "expand"].contains(&record["quantifiers_used"].as_str().expect("it says so")),
+            "{record}"
+        );
         assert_eq!(
             (&record["states"], &record["states_used"]),
             (&"auto".into(), &"onehot".into()),
@@ -101,6 +105,7 @@ fn what_is_done_is_not_done_again() {
     // Another build of a solver that has no version.
     let program = fs::OpenOptions::new().append(true).open(fake.program()).expect("ours");
     program.set_modified(std::time::SystemTime::UNIX_EPOCH).expect("ours");
+    drop(program);
     assert_eq!(run(&[]).0, 17);
 }
 
