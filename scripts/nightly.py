@@ -13,7 +13,7 @@ import sys
 import compared
 
 PROBLEMS = ["specs/rooms.hp", "specs/case-studies", "specs/pass"]
-KEYS = ("instance", "set", "solver", "quantifiers", "states", "options", "seed")
+WAY = ("solver", "quantifiers", "states", "options")
 
 
 def main() -> None:
@@ -41,7 +41,8 @@ def grouped(records: list[dict]) -> dict[str, list[dict]]:
     """The repetitions of each run."""
     groups: dict[str, list[dict]] = {}
     for record in records:
-        groups.setdefault(" ".join(str(record[key]) for key in KEYS), []).append(record)
+        parts = [record["instance"], *record["set"], *(record[key] for key in WAY), record["seed"] and f"seed {record['seed']}"]
+        groups.setdefault(" ".join(part for part in parts if part), []).append(record)
     return groups
 
 

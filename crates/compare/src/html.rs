@@ -275,6 +275,12 @@ fn details(cell: &Cell<'_>) -> String {
     if cell.runs.len() > 1 {
         text.push_str(&format!(", median of {} runs", cell.runs.len()));
     }
+    let used = [("quantifiers", &run.quantifiers_used), ("states", &run.states_used)];
+    for (name, how) in used {
+        if let Some(how) = how {
+            text.push_str(&format!(", {name} {how}"));
+        }
+    }
     let sizes = [("horizon", run.horizon), ("variables", run.variables), ("assertions", run.assertions)];
     for (name, size) in sizes {
         if let Some(size) = size {

@@ -192,9 +192,12 @@ impl<'a> Instance<'a> {
 /// The solver that is part of hyperplan.
 const EMBEDDED: &str = "builtin";
 
-/// Who asks the same gets the same query, or is led by the answers of the solver alone.
+/// Who asks the same gets the same query, or is led by the answers of the solver alone. What was left to hyperplan counts as
+/// what became of it.
 fn asked(record: &Record) -> (Option<&str>, Option<&str>, &str) {
-    (record.quantifiers.as_deref(), record.states.as_deref(), &record.options)
+    let quantifiers = record.quantifiers_used.as_deref().or(record.quantifiers.as_deref());
+    let states = record.states_used.as_deref().or(record.states.as_deref());
+    (quantifiers, states, &record.options)
 }
 
 /// Runs of one contestant that say the same, as one claim.

@@ -57,6 +57,17 @@ fn different_encodings_that_disagree_blame_us() {
     assert_eq!(kinds(&records), [(Kind::Disagreement, Fault::Ours)]);
 }
 
+/// What `auto` became is what was asked.
+#[test]
+fn the_encodings_that_were_used() {
+    let used =
+        |quantifiers: &str, record| Record { quantifiers_used: Some(quantifiers.to_owned()), ..record };
+    let records = [used("keep", said("z3", Status::Sat)), used("expand", said("cvc5", Status::Unsat))];
+    assert_eq!(kinds(&records), [(Kind::Disagreement, Fault::Ours)]);
+    let records = [used("keep", said("z3", Status::Sat)), used("keep", mode("cvc5", "keep", Status::Unsat))];
+    assert_eq!(kinds(&records), [(Kind::Disagreement, Fault::Solver)]);
+}
+
 #[test]
 fn one_solver_and_two_seeds() {
     let records = [said("z3", Status::Sat), Record { seed: 1, ..said("z3", Status::Unsat) }];

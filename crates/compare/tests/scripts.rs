@@ -128,8 +128,8 @@ fn nightly() {
     let (text, status) = night("2026-01-03", &after, 0);
     let expected = "\
 2 runs are worse than on 2026-01-02
-  a [] z3 auto onehot  0: sat, now unsat
-  b [] z3 auto onehot  0: 1.000 s, now 3.500 s
+  a z3 auto onehot: sat, now unsat
+  b z3 auto onehot: 1.000 s, now 3.500 s
 ";
     assert_eq!((text.as_str(), status), (expected, Some(1)));
     assert_eq!(night("2026-01-04", &after, 5).1, Some(5));
