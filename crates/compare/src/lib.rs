@@ -1,5 +1,37 @@
 //! Comparisons of solvers: what was run, and what came of it.
+//!
+//! [`plan`](plan::plan) says what is to be run, [`run_all`] runs it, each run below a process that
+//! [`supervise`](supervise())s it, and a [`Log`] keeps a [`Record`] of each. From the records come judgement, scores,
+//! tables and plots.
 
+pub mod benchexec;
+pub mod contest;
+mod html;
+mod judge;
+mod log;
+mod outcome;
+pub mod plan;
+pub mod plot;
+mod pool;
+mod query;
 mod record;
+pub mod report;
+pub mod score;
+mod supervise;
+pub mod table;
+mod tree;
 
+pub use judge::{Claim, Fault, Finding, Judgement, Kind, judge};
+pub use log::{Log, LogError, Past};
+pub use pool::{Event, Setting, prepare, run_all};
+pub use query::Query;
 pub use record::{Answer, Limit, Record, Status};
+pub use supervise::supervise;
+
+use contest::Contest;
+
+/// What a terminal shows of a comparison: what is wrong, the results if they are few, the scores.
+pub fn summary(records: &[Record]) -> String {
+    let contest = Contest::new(records);
+    table::summary(&contest, &judge::judge_contest(&contest))
+}

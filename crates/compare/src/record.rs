@@ -54,9 +54,9 @@ pub struct Record {
     pub sha256: String,
     /// The logic of what the solver got, where known.
     pub logic: Option<String>,
-    /// How states were written; `None` for a query.
+    /// How states were to be written; `None` for a query.
     pub states: Option<String>,
-    /// How quantifiers were decided; `None` for a query.
+    /// How quantifiers were to be decided; `None` for a query.
     pub quantifiers: Option<String>,
     /// The largest horizon of a path.
     pub horizon: Option<u64>,
@@ -102,4 +102,65 @@ pub struct Record {
     pub message: Option<String>,
     /// Where its queries are kept, relative to the log.
     pub queries: Option<String>,
+    /// Tells this run from all others: a digest of everything that its outcome depends on.
+    #[serde(default)]
+    pub key: String,
+    /// What became of `auto`, or was asked for: how states were written, where the run got so far as to say.
+    #[serde(default)]
+    pub states_used: Option<String>,
+    /// In the same way, how quantifiers were decided.
+    #[serde(default)]
+    pub quantifiers_used: Option<String>,
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// A run with that key.
+    pub(crate) fn record(key: &str) -> Record {
+        Record {
+            instance: "rooms.hp#sp".to_owned(),
+            family: ".".to_owned(),
+            sha256: "00".to_owned(),
+            logic: None,
+            states: Some("auto".to_owned()),
+            quantifiers: Some("auto".to_owned()),
+            horizon: Some(6),
+            set: Vec::new(),
+            solver: "z3".to_owned(),
+            version: None,
+            options: String::new(),
+            seed: 0,
+            repetition: 0,
+            status: Status::Sat,
+            expected: None,
+            verified: None,
+            wall_s: 0.5,
+            cpu_s: 0.25,
+            memory_mib: 20.5,
+            limit: Limit::default(),
+            exit_code: Some(0),
+            signal: None,
+            host: "here".to_owned(),
+            variables: None,
+            assertions: None,
+            bytes: None,
+            message: None,
+            queries: None,
+            key: key.to_owned(),
+            states_used: None,
+            quantifiers_used: None,
+        }
+    }
+
+    #[test]
+    fn later_fields_may_be_missing() {
+        let mut line = serde_json::to_value(record("")).expect("it is JSON");
+        let fields = line.as_object_mut().expect("it is an object");
+        for field in ["key", "states_used", "quantifiers_used"] {
+            assert!(fields.remove(field).is_some());
+        }
+        assert_eq!(serde_json::from_value::<Record>(line).expect("it is a record"), record(""));
+    }
 }

@@ -107,7 +107,9 @@ fn solve_query(criterion: &mut Criterion, name: &str, _: &Case, problem: &Proble
     criterion.bench_function(&format!("solve/{name}"), |b| {
         b.iter(|| {
             let mut session = open(&Spec::Builtin, &Options::default()).expect("it is built in");
-            let answer = session.check(query.script().expect("one query"), &[], &Deadline::never()).expect("it can be solved");
+            let answer = session
+                .check(query.script().expect("one query"), &[], &Deadline::never())
+                .expect("it can be solved");
             assert_eq!(answer, Answer::Sat);
         });
     });

@@ -129,10 +129,15 @@ pub(crate) enum Command {
     Verify(Verify),
     /// Draw the map, with the paths of a strategy
     Plot(Plot),
+    /// Run solvers and encodings over problems, and say who is right and who is fast
+    Compare(Box<Compare>),
     /// List the solvers that were found
     Solvers(Solvers),
     /// Show the built-in templates
     Templates(Templates),
+    /// Measures one run of a comparison, which is read from standard input
+    #[command(hide = true)]
+    Supervise,
 }
 
 #[derive(Debug, Args)]
@@ -312,6 +317,74 @@ pub(crate) struct Plot {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = COMPARE_HELP)]
+pub(crate) struct Compare {
+    /// Problem files (.hp), SMT-LIB files (.smt2), folders with such files, or patterns (`'specs/**/*-10.hp'`); without
+    /// any, what was run before is reported again
+    #[arg(value_name = "FILE|FOLDER|PATTERN")]
+    pub(crate) files: Vec<String>,
+    /// The objectives, or `all`; files that have none of that name are left out
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_value = "all")]
+    pub(crate) objective: Vec<String>,
+    /// Solvers as for `solve`; here commas mean each of them by itself, not a race [default: builtin and all that are
+    /// installed]
+    #[arg(long, value_name = "SOLVER,...")]
+    pub(crate) solver: Option<String>,
+    /// How quantifiers are decided, each in turn
+    #[arg(long, value_enum, value_name = "HOW,...", value_delimiter = ',', default_value = "auto")]
+    pub(crate) quantifiers: Vec<Quantifiers>,
+    /// How states are represented, each in turn
+    #[arg(long, value_enum, value_name = "HOW,...", value_delimiter = ',', default_value = "auto")]
+    pub(crate) states: Vec<States>,
+    /// Replaces the value of a constant, by each of several in turn; with several constants, all combinations
+    #[arg(long, value_name = "NAME=VALUE,...|LO..HI", value_parser = settings)]
+    pub(crate) set: Vec<Settings>,
+    /// Seeds of the solver, each in turn
+    #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "0")]
+    pub(crate) seed: Vec<u64>,
+    /// How often to do each run
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) repeat: u32,
+    /// Wall time of each run
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
+    pub(crate) timeout: f64,
+    /// CPU time of each run, with everything it starts
+    #[arg(long, value_name = "SECONDS")]
+    pub(crate) cpu: Option<f64>,
+    /// Most memory of each run, with everything it starts
+    #[arg(long, value_name = "MIB")]
+    pub(crate) memory: Option<u64>,
+    /// How many runs at a time; they slow each other down
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) jobs: u16,
+    /// The folder for the log of all runs, runs.jsonl, and the reports
+    #[arg(long, value_name = "DIR", default_value = "comparison")]
+    pub(crate) out: PathBuf,
+    /// Keeps the queries of each run there
+    #[arg(long)]
+    pub(crate) queries: bool,
+    /// Leaves strategies unchecked
+    #[arg(long)]
+    pub(crate) no_verify: bool,
+    /// Runs nothing, but writes the same comparison of problem files for BenchExec
+    #[arg(long, value_name = "DIR")]
+    pub(crate) benchexec: Option<PathBuf>,
+}
+
+const COMPARE_HELP: &str = "Every run is written to the log as soon as it has ended. The same command again does only \
+what is missing there: after an interruption, or where a file, a solver, an option or a limit has changed.
+
+Exit status: 0 nothing is wrong with any answer; 4 a solver gave a wrong answer or model; 5 hyperplan may have; \
+2 bad usage or input; 130 interrupted.";
+
+/// A constant and its values.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Settings {
+    pub(crate) name: String,
+    pub(crate) values: Vec<String>,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct Solvers {
     #[command(flatten)]
     pub(crate) output: Output,
@@ -330,6 +403,27 @@ fn setting(text: &str) -> Result<(String, String), String> {
         }
         _ => Err("expected NAME=VALUE, such as T=8".to_owned()),
     }
+}
+
+/// The most values of a range.
+const VALUES: i64 = 10_000;
+
+fn settings(text: &str) -> Result<Settings, String> {
+    let (name, values) = setting(text)?;
+    let number = |text: &str| text.trim().parse::<i64>().ok();
+    let range = values.split_once("..").and_then(|(lo, hi)| number(lo).zip(number(hi)));
+    let values: Vec<String> = match range {
+        Some((lo, hi)) if lo > hi => return Err(format!("the range {lo}..{hi} is empty")),
+        Some((lo, hi)) if hi.checked_sub(lo).is_none_or(|size| size >= VALUES) => {
+            return Err(format!("the range {lo}..{hi} has more than {VALUES} values"));
+        }
+        Some((lo, hi)) => (lo..=hi).map(|value| value.to_string()).collect(),
+        None => values.split(',').map(|value| value.trim().to_owned()).collect(),
+    };
+    if values.iter().any(String::is_empty) {
+        return Err("expected NAME=VALUE, NAME=VALUE,VALUE or NAME=LO..HI".to_owned());
+    }
+    Ok(Settings { name, values })
 }
 
 /// The greatest number that a range may have, as in problem files; differences of two of them are numbers still.

@@ -110,7 +110,7 @@ pub(crate) fn lower_file(
 }
 
 /// Files named in a problem file are beside it.
-struct Beside(PathBuf);
+pub(crate) struct Beside(pub(crate) PathBuf);
 
 impl Loader for Beside {
     fn load(&self, path: &str) -> Result<Vec<u8>, String> {
@@ -132,7 +132,7 @@ pub(crate) fn read_source(path: &Path) -> Outcome<String> {
     })
 }
 
-fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
+pub(crate) fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
     // A directory can be opened on some systems, and then says something less clear.
     let length = std::fs::metadata(path)?.len();
     if path.is_dir() {
@@ -145,7 +145,7 @@ fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
 }
 
 /// Why a file cannot be read, in words without the system's error number.
-fn reason(error: &io::Error) -> String {
+pub(crate) fn reason(error: &io::Error) -> String {
     match error.kind() {
         io::ErrorKind::NotFound => "there is no such file".to_owned(),
         io::ErrorKind::PermissionDenied => "permission denied".to_owned(),

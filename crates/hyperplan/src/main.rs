@@ -6,8 +6,10 @@ mod config;
 mod configuration;
 mod failure;
 mod family;
+mod instances;
 mod load;
 mod output;
+mod progress;
 mod report;
 mod signals;
 

@@ -20,6 +20,7 @@ pub use error::Error;
 #[doc(hidden)]
 pub use external::understand_output;
 pub use external::{
-    Catalog, ConfigError, Facts, Found, Install, PrintedModel, PrintedModelError, Profile, discover,
+    Catalog, ConfigError, Facts, Found, Install, PrintedModel, PrintedModelError, Profile, Standalone,
+    discover, end_with_parent,
 };
 pub use session::{Answer, Identity, Options, Session, Size, Spec, open};

@@ -1,6 +1,7 @@
 //! One module for each command.
 
 mod check;
+mod compare;
 mod emit;
 mod horizon;
 mod plot;
@@ -23,7 +24,9 @@ pub(crate) fn run(cli: &Cli, out: &mut Output) -> Outcome {
         Command::Check(args) => check::run(args, verbose, out),
         Command::Verify(args) => verify::run(args, out),
         Command::Plot(args) => plot::run(args, out),
+        Command::Compare(args) => compare::run(args, cli.global.quiet, out),
         Command::Solvers(args) => solvers::run(args, out),
         Command::Templates(args) => templates::run(args, out),
+        Command::Supervise => compare::supervise(),
     }
 }

@@ -5,6 +5,8 @@
 #[cfg(unix)]
 pub(crate) mod fakes;
 
+pub(crate) mod compare;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 

@@ -13,6 +13,7 @@ mod profile;
 mod program;
 mod reply;
 mod sexpr;
+mod standalone;
 mod version;
 mod watchdog;
 
@@ -23,7 +24,9 @@ pub(crate) use discover::for_arithmetic;
 pub use discover::{Found, discover};
 pub use facts::Facts;
 pub use model::{PrintedModel, PrintedModelError};
+pub use process::end_with_parent;
 pub use profile::{Install, Profile};
 pub(crate) use profile::{profile, that_take};
 #[doc(hidden)]
 pub use reply::understand_output;
+pub use standalone::Standalone;

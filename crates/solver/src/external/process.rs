@@ -361,6 +361,11 @@ fn read_errors(mut stderr: ChildStderr, tail: &Mutex<Vec<u8>>) {
     }
 }
 
+/// Has the kernel kill a process when the thread that starts it ends, where the kernel can: on Linux.
+pub fn end_with_parent(command: &mut Command) {
+    prepare(command, None);
+}
+
 /// Sets the limits that the process gives itself before it becomes the solver.
 #[cfg(target_os = "linux")]
 #[allow(unsafe_code)]

@@ -1,0 +1,352 @@
+//! Who was compared on what: the records, sorted into a table of contestants by instances.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::{Answer, Record, Status};
+
+/// What takes part in a comparison: a solver together with everything that was chosen for it.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Contestant {
+    /// The solver, as it was asked for.
+    pub solver: String,
+    /// What it says its version is.
+    pub version: Option<String>,
+    /// How quantifiers were decided; `None` for queries.
+    pub quantifiers: Option<String>,
+    /// How states were written; `None` for queries.
+    pub states: Option<String>,
+    /// Further options.
+    pub options: String,
+    /// The solver with no more of the rest than tells it from the other contestants.
+    pub label: String,
+}
+
+/// What was asked: a file with its constants. Files that changed in between are different instances.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Instance {
+    /// Its folder.
+    pub family: String,
+    /// The file, and for a problem file the objective.
+    pub name: String,
+    /// The constants that were set.
+    pub set: Vec<String>,
+    /// Of the file's bytes.
+    pub sha256: String,
+    /// The name with its constants, and the beginning of the hash where the name alone is ambiguous.
+    pub label: String,
+}
+
+/// The runs of one contestant on one instance.
+#[derive(Clone, Debug)]
+pub struct Cell<'a> {
+    /// All of them, in the order of seeds and repetitions.
+    pub runs: Vec<&'a Record>,
+    /// The one that stands for all: the median.
+    pub median: &'a Record,
+    /// Some run gave an answer that is known to be wrong, or one that failed its check.
+    pub wrong: bool,
+}
+
+/// The records as a table.
+#[derive(Clone, Debug)]
+pub struct Contest<'a> {
+    /// The contestants, in order.
+    pub contestants: Vec<Contestant>,
+    /// The instances, by family and name.
+    pub instances: Vec<Instance>,
+    /// By instance and contestant; `None` where nothing was run.
+    pub cells: Vec<Vec<Option<Cell<'a>>>>,
+    /// Of each instance, the answer that is known to be right.
+    pub truth: Vec<Option<Answer>>,
+    /// Of each instance, whether both answers were given and nothing says which is right.
+    pub disputed: Vec<bool>,
+}
+
+/// What tells contestants apart: solver, quantifiers, states, version, options.
+type Identity<'a> = (&'a str, Option<&'a str>, Option<&'a str>, Option<&'a str>, &'a str);
+
+impl<'a> Contest<'a> {
+    /// Sorts the records.
+    pub fn new(records: &'a [Record]) -> Self {
+        let versions = Versions::new(records);
+        let identity = |record: &'a Record| -> Identity<'a> {
+            let version = versions.of(record);
+            (
+                &record.solver,
+                record.quantifiers.as_deref(),
+                record.states.as_deref(),
+                version,
+                &record.options,
+            )
+        };
+        let mut table: BTreeMap<_, BTreeMap<_, Vec<&Record>>> = BTreeMap::new();
+        for record in records {
+            table.entry(place(record)).or_default().entry(identity(record)).or_default().push(record);
+        }
+        let identities: BTreeSet<_> = table.values().flat_map(BTreeMap::keys).copied().collect();
+        let identities: Vec<_> = identities.into_iter().collect();
+        let mut contest = Self {
+            contestants: contestants(&identities),
+            instances: instances(table.keys().copied()),
+            cells: Vec::new(),
+            truth: Vec::new(),
+            disputed: Vec::new(),
+        };
+        for mut row in table.into_values() {
+            let runs: Vec<&Record> = row.values().flatten().copied().collect();
+            let truth = truth(&runs);
+            contest.truth.push(truth);
+            contest.disputed.push(truth.is_none() && disputed(&runs));
+            contest.cells.push(
+                identities
+                    .iter()
+                    .map(|who| row.remove(who).and_then(|runs| Cell::new(runs, truth)))
+                    .collect(),
+            );
+        }
+        contest
+    }
+
+    /// The answer to an instance, in a word: the one that is known to be right, or was given, or that nobody knows.
+    pub fn answer(&self, instance: usize) -> String {
+        let given = || self.cells[instance].iter().flatten().find_map(Cell::solved);
+        match (self.disputed[instance], self.truth[instance].or_else(given)) {
+            (true, _) => "disputed".to_owned(),
+            (false, Some(answer)) => answer.to_string(),
+            (false, None) => "unknown".to_owned(),
+        }
+    }
+
+    /// The one contestant that solved an instance, if it was only one.
+    pub fn only(&self, instance: usize) -> Option<usize> {
+        let row = self.cells[instance].iter().enumerate();
+        let mut solved = row.filter(|(_, cell)| cell.as_ref().is_some_and(|cell| cell.solved().is_some()));
+        let (first, _) = solved.next()?;
+        solved.next().is_none().then_some(first)
+    }
+
+    /// The cells of one contestant, with the number of the instance.
+    pub fn column(&self, contestant: usize) -> impl Iterator<Item = (usize, &Cell<'a>)> {
+        self.cells
+            .iter()
+            .enumerate()
+            .filter_map(move |(i, row)| row[contestant].as_ref().map(|cell| (i, cell)))
+    }
+
+    /// The largest wall time that any run was allowed, or took where nothing was said; what a plot has to show.
+    pub fn longest(&self) -> f64 {
+        let runs = self.cells.iter().flatten().flatten().flat_map(|cell| &cell.runs);
+        runs.map(|run| allowed(run).unwrap_or(run.wall_s)).fold(0.0, f64::max)
+    }
+
+    /// The wall time that every run was allowed, if it was the same for all.
+    pub fn limit(&self) -> Option<f64> {
+        let mut limits =
+            self.cells.iter().flatten().flatten().flat_map(|cell| &cell.runs).map(|run| allowed(run));
+        let first = limits.next()??;
+        limits.all(|limit| limit == Some(first)).then_some(first)
+    }
+}
+
+impl<'a> Cell<'a> {
+    /// Of runs that ended sooner or later, the middle one, where those without an answer come last; of an even number the
+    /// later of the two, so that a contestant that solves an instance every other time has not solved it. Unlike the mean
+    /// of two runs, it is a run, with a status. Runs of what a contestant does not support do not count among others.
+    fn new(mut runs: Vec<&'a Record>, truth: Option<Answer>) -> Option<Self> {
+        runs.sort_by_key(|run| (run.seed, run.repetition));
+        let mut order = runs.clone();
+        if order.iter().any(|run| run.status != Status::Unsupported) {
+            order.retain(|run| run.status != Status::Unsupported);
+        }
+        order.sort_by(|a, b| {
+            let key = |run: &Record| (answer(run).is_none(), run.status);
+            key(a).0.cmp(&key(b).0).then(a.wall_s.total_cmp(&b.wall_s)).then(key(a).1.cmp(&key(b).1))
+        });
+        let median = *order.get(order.len() / 2)?;
+        let wrong = runs.iter().any(|run| is_wrong(run, truth));
+        Some(Self { runs, median, wrong })
+    }
+
+    /// The answer of the median run, if no run was wrong.
+    pub fn solved(&self) -> Option<Answer> {
+        answer(self.median).filter(|_| !self.wrong)
+    }
+
+    /// What the median run says, wrong or not.
+    pub fn says(&self) -> Option<Answer> {
+        answer(self.median)
+    }
+
+    /// Whether it counts: what a contestant does not support is not held against it.
+    pub fn counts(&self) -> bool {
+        self.median.status != Status::Unsupported
+    }
+}
+
+/// The versions of each solver, as far as runs said them. One that crashed says none, another no more than the beginning; where
+/// it can be only one, that is meant.
+struct Versions<'a>(BTreeMap<&'a str, BTreeSet<&'a str>>);
+
+impl<'a> Versions<'a> {
+    fn new(records: &'a [Record]) -> Self {
+        let mut versions: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+        for record in records {
+            versions.entry(&record.solver).or_default().extend(record.version.as_deref());
+        }
+        for known in versions.values_mut() {
+            let full = |version: &&str| !known.iter().any(|other| is_beginning(version, other));
+            *known = known.iter().copied().filter(full).collect();
+        }
+        Self(versions)
+    }
+
+    fn of(&self, record: &'a Record) -> Option<&'a str> {
+        let said = record.version.as_deref();
+        let known = self.0.get(record.solver.as_str())?;
+        let mut meant = known.iter().copied().filter(|full| match said {
+            Some(version) => version == *full || is_beginning(version, full),
+            None => true,
+        });
+        match (meant.next(), meant.next()) {
+            (Some(version), None) => Some(version),
+            _ => said,
+        }
+    }
+}
+
+/// Whether a version is the same with less said: `1.0` of `1.0 (a build)`.
+fn is_beginning(version: &str, other: &str) -> bool {
+    other.strip_prefix(version).is_some_and(|rest| rest.starts_with(' '))
+}
+
+/// What a run says, whether or not it is right.
+pub(crate) fn answer(run: &Record) -> Option<Answer> {
+    match run.status {
+        Status::Sat => Some(Answer::Sat),
+        Status::Unsat => Some(Answer::Unsat),
+        Status::Unknown | Status::Timeout | Status::Memout | Status::Error | Status::Unsupported => None,
+    }
+}
+
+/// Whether a run's witness failed its check.
+pub(crate) fn is_refuted(run: &Record) -> bool {
+    run.verified.as_deref() == Some("refuted")
+}
+
+/// Whether an SMT-LIB file was run.
+pub(crate) fn is_query(record: &Record) -> bool {
+    record.quantifiers.is_none() && record.states.is_none()
+}
+
+/// Whether the model fails, which is the solver's fault. Of a query it is the solver that is checked; hyperplan itself tells a
+/// model that does not satisfy its query (exit status 4) from a strategy that its own checker refutes (5).
+pub(crate) fn is_wrong_model(record: &Record) -> bool {
+    let blamed = record.exit_code == Some(4) || is_query(record);
+    is_refuted(record) && blamed
+        || record.status == Status::Error
+            && record.message.as_deref().is_some_and(|message| message.contains("wrong model"))
+}
+
+/// Whether the strategy fails though nobody blames the model.
+pub(crate) fn is_refuted_strategy(record: &Record) -> bool {
+    !is_query(record) && !is_wrong_model(record) && (is_refuted(record) || record.exit_code == Some(5))
+}
+
+/// Whether it is known that a run's answer is wrong.
+fn is_wrong(run: &Record, truth: Option<Answer>) -> bool {
+    is_wrong_model(run)
+        || is_refuted_strategy(run)
+        || truth.is_some() && answer(run).is_some_and(|answer| Some(answer) != truth)
+}
+
+/// Whether an answer came with a witness that was checked without any solver.
+pub(crate) fn is_certified(run: &Record) -> bool {
+    matches!(run.verified.as_deref(), Some("by-search" | "model")) && answer(run).is_some()
+}
+
+/// The wall time that a run was allowed.
+pub(crate) fn allowed(run: &Record) -> Option<f64> {
+    run.limit.wall_s.or(run.limit.cpu_s)
+}
+
+/// The answer that is known to be right: the expected one, or one with a checked witness. Where witnesses contradict
+/// each other nothing is known.
+fn truth(runs: &[&Record]) -> Option<Answer> {
+    let agreed = |answers: BTreeSet<Answer>| if answers.len() == 1 { answers.first().copied() } else { None };
+    let expected: BTreeSet<Answer> = runs.iter().filter_map(|run| run.expected).collect();
+    if expected.is_empty() {
+        agreed(runs.iter().filter(|run| is_certified(run)).filter_map(|run| answer(run)).collect())
+    } else {
+        agreed(expected)
+    }
+}
+
+/// Whether both answers were given, by runs that did not fail their check.
+fn disputed(runs: &[&Record]) -> bool {
+    let said = |what| runs.iter().any(|run| answer(run) == Some(what) && !is_refuted(run));
+    said(Answer::Sat) && said(Answer::Unsat)
+}
+
+fn place(record: &Record) -> (&str, &str, &[String], &str) {
+    (&record.family, &record.instance, &record.set, &record.sha256)
+}
+
+fn instances<'a>(places: impl Iterator<Item = (&'a str, &'a str, &'a [String], &'a str)>) -> Vec<Instance> {
+    let mut found: Vec<Instance> = places
+        .map(|(family, name, set, sha256)| Instance {
+            family: family.to_owned(),
+            name: name.to_owned(),
+            set: set.to_vec(),
+            sha256: sha256.to_owned(),
+            label: std::iter::once(name).chain(set.iter().map(String::as_str)).collect::<Vec<_>>().join(" "),
+        })
+        .collect();
+    let mut labels: BTreeMap<String, usize> = BTreeMap::new();
+    for instance in &found {
+        *labels.entry(instance.label.clone()).or_default() += 1;
+    }
+    for instance in found.iter_mut().filter(|instance| labels[&instance.label] > 1) {
+        let hash: String = instance.sha256.chars().take(8).collect();
+        instance.label = format!("{} ({hash})", instance.label);
+    }
+    found
+}
+
+fn contestants(identities: &[Identity<'_>]) -> Vec<Contestant> {
+    let owned = |part: Option<&str>| part.map(str::to_owned);
+    let mut solvers: BTreeMap<&str, BTreeSet<Option<&str>>> = BTreeMap::new();
+    for (solver, _, _, version, _) in identities {
+        solvers.entry(solver).or_default().insert(*version);
+    }
+    // A choice is worth saying if it was not the same for everyone.
+    let quantifiers_vary = identities.iter().map(|who| who.1).collect::<BTreeSet<_>>().len() > 1;
+    let states_vary = identities.iter().map(|who| who.2).collect::<BTreeSet<_>>().len() > 1;
+    let options_vary = identities.iter().map(|who| who.4).collect::<BTreeSet<_>>().len() > 1;
+    let label = |who: &Identity<'_>| {
+        let (solver, quantifiers, states, version, options) = *who;
+        let mut label = solver.to_owned();
+        if solvers[solver].len() > 1 {
+            label = format!("{label} {}", version.unwrap_or("(version unknown)"));
+        }
+        let parts = [
+            quantifiers.filter(|_| quantifiers_vary),
+            states.filter(|_| states_vary),
+            Some(options).filter(|options| options_vary && !options.is_empty()),
+        ];
+        for part in parts.into_iter().flatten() {
+            label = format!("{label} {part}");
+        }
+        label
+    };
+    identities
+        .iter()
+        .map(|who| Contestant {
+            solver: who.0.to_owned(),
+            version: owned(who.3),
+            quantifiers: owned(who.1),
+            states: owned(who.2),
+            options: who.4.to_owned(),
+            label: label(who),
+        })
+        .collect()
+}

@@ -1,0 +1,315 @@
+//! What is wrong with the answers: who contradicts whom, and whose fault it is.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use serde::Serialize;
+
+use crate::contest::{Contest, answer, is_query, is_refuted, is_refuted_strategy, is_wrong_model};
+use crate::{Answer, Record, Status};
+
+/// What is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// An answer contradicts the known status.
+    Expected,
+    /// Different solvers gave different answers.
+    Disagreement,
+    /// One solver gave different answers, to different encodings or in different runs.
+    SelfContradiction,
+    /// A model does not satisfy its query.
+    WrongModel,
+    /// The checker refutes the strategy that was found.
+    RefutedStrategy,
+}
+
+/// Whose fault it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Fault {
+    /// A solver's: it was asked the same as one that says otherwise, or got a query and no more, or its model is wrong.
+    Solver,
+    /// Ours, for all that is known: nothing clears the encoding.
+    Ours,
+}
+
+/// What somebody said.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub struct Claim {
+    /// The contestant.
+    pub who: String,
+    /// What it said; `None` where it is the witness that is wrong.
+    pub answer: Option<Answer>,
+    /// How the answer's witness was checked.
+    pub verified: Option<String>,
+    /// How many of its runs said so.
+    pub runs: usize,
+    /// What was said besides, the first time.
+    pub message: Option<String>,
+    /// Where the queries are, relative to the log.
+    pub queries: Option<String>,
+}
+
+/// Something wrong with the answers to one instance.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Finding {
+    /// What.
+    pub kind: Kind,
+    /// Whose fault it is.
+    pub fault: Fault,
+    /// The instance.
+    pub instance: String,
+    /// The right answer, where it is known.
+    pub truth: Option<Answer>,
+    /// Who said what.
+    pub claims: Vec<Claim>,
+}
+
+/// All that is wrong.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Judgement {
+    /// By instance.
+    pub findings: Vec<Finding>,
+}
+
+impl Judgement {
+    /// Whether nothing is wrong.
+    pub fn is_clean(&self) -> bool {
+        self.findings.is_empty()
+    }
+
+    /// 0 where nothing is wrong, 4 where solvers are to blame, 5 where hyperplan may be.
+    pub fn exit_code(&self) -> u8 {
+        match self.findings.iter().map(|finding| finding.fault).max() {
+            None => 0,
+            Some(Fault::Solver) => 4,
+            Some(Fault::Ours) => 5,
+        }
+    }
+}
+
+/// Judges the answers of all runs.
+pub fn judge(records: &[Record]) -> Judgement {
+    judge_contest(&Contest::new(records))
+}
+
+/// Judges the answers of a contest.
+pub(crate) fn judge_contest(contest: &Contest<'_>) -> Judgement {
+    let mut findings = Vec::new();
+    for (i, row) in contest.cells.iter().enumerate() {
+        let runs: Vec<Run<'_>> = row
+            .iter()
+            .zip(&contest.contestants)
+            .filter_map(|(cell, contestant)| Some((cell.as_ref()?, contestant)))
+            .flat_map(|(cell, contestant)| {
+                cell.runs.iter().map(|record| Run { who: contestant.label.as_str(), record })
+            })
+            .collect();
+        let instance = Instance { label: &contest.instances[i].label, truth: contest.truth[i], runs: &runs };
+        findings.extend(instance.against_expected());
+        findings.extend(instance.disagreement());
+        findings.extend(instance.witnesses(Kind::WrongModel, is_wrong_model, Fault::Solver));
+        findings.extend(instance.witnesses(Kind::RefutedStrategy, is_refuted_strategy, Fault::Ours));
+    }
+    Judgement { findings }
+}
+
+struct Run<'a> {
+    who: &'a str,
+    record: &'a Record,
+}
+
+struct Instance<'a> {
+    label: &'a str,
+    truth: Option<Answer>,
+    runs: &'a [Run<'a>],
+}
+
+impl<'a> Instance<'a> {
+    fn finding(&self, kind: Kind, fault: Fault, claims: Vec<Claim>) -> Finding {
+        Finding { kind, fault, instance: self.label.to_owned(), truth: self.truth, claims }
+    }
+
+    /// Answers other than the expected one. Who else is right is seen from the disagreement, if there is one.
+    fn against_expected(&self) -> Option<Finding> {
+        let against = |run: &&Run<'_>| {
+            run.record
+                .expected
+                .is_some_and(|expected| answer(run.record).is_some_and(|said| said != expected))
+        };
+        let wrong: Vec<&Run<'_>> = self.runs.iter().filter(against).collect();
+        if wrong.is_empty() {
+            return None;
+        }
+        let mut finding = self.finding(Kind::Expected, self.fault(&wrong), claims(&wrong));
+        finding.truth = wrong.iter().find_map(|run| run.record.expected);
+        Some(finding)
+    }
+
+    /// Answers that contradict each other. Those whose witness failed are told of anyway.
+    fn disagreement(&self) -> Option<Finding> {
+        let said: Vec<&Run<'_>> =
+            self.runs.iter().filter(|run| answer(run.record).is_some() && !is_refuted(run.record)).collect();
+        let first = answer(said.first()?.record);
+        if said.iter().all(|run| answer(run.record) == first) {
+            return None;
+        }
+        let one = said.iter().all(|run| run.record.solver == said[0].record.solver);
+        let kind = if one { Kind::SelfContradiction } else { Kind::Disagreement };
+        let wrong: Vec<&Run<'_>> = match self.truth {
+            Some(_) => said.iter().copied().filter(|run| answer(run.record) != self.truth).collect(),
+            None => said.clone(),
+        };
+        let mut finding = self.finding(kind, self.fault(&wrong), claims(&said));
+        finding.claims.sort_by_key(|claim| self.truth.is_some() && claim.answer == self.truth);
+        Some(finding)
+    }
+
+    /// What failed witnesses of one kind come to.
+    fn witnesses(&self, kind: Kind, is: fn(&Record) -> bool, fault: Fault) -> Option<Finding> {
+        let failed: Vec<&Run<'_>> = self.runs.iter().filter(|run| is(run.record)).collect();
+        (!failed.is_empty()).then(|| self.finding(kind, fault, claims(&failed)))
+    }
+
+    /// Whose fault answers are that contradict something. Solvers that got the same and say different things cannot both be
+    /// right; neither can a solver that got a query, as it stands in a file, and contradicts its status. Otherwise nothing
+    /// clears the encoding, which is ours; and so is the embedded engine.
+    fn fault(&self, wrong: &[&Run<'_>]) -> Fault {
+        let contradicted = |run: &&&Run<'_>| {
+            is_query(run.record)
+                || self.runs.iter().any(|other| {
+                    asked(other.record) == asked(run.record)
+                        && answer(other.record).is_some_and(|said| Some(said) != answer(run.record))
+                })
+        };
+        let clears = wrong.iter().all(|run| contradicted(&run));
+        let external = wrong.iter().any(|run| run.record.solver != EMBEDDED);
+        if clears && external { Fault::Solver } else { Fault::Ours }
+    }
+}
+
+/// The solver that is part of hyperplan.
+const EMBEDDED: &str = "builtin";
+
+/// Who asks the same gets the same query, or is led by the answers of the solver alone. What was left to hyperplan counts as
+/// what became of it.
+fn asked(record: &Record) -> (Option<&str>, Option<&str>, &str) {
+    let quantifiers = record.quantifiers_used.as_deref().or(record.quantifiers.as_deref());
+    let states = record.states_used.as_deref().or(record.states.as_deref());
+    (quantifiers, states, &record.options)
+}
+
+/// Runs of one contestant that say the same, as one claim.
+fn claims(runs: &[&Run<'_>]) -> Vec<Claim> {
+    let mut found: BTreeMap<(Option<Answer>, &str, Option<&str>), Claim> = BTreeMap::new();
+    for run in runs {
+        let record = run.record;
+        let claim =
+            found.entry((answer(record), run.who, record.verified.as_deref())).or_insert_with(|| Claim {
+                who: run.who.to_owned(),
+                answer: answer(record),
+                verified: record.verified.clone(),
+                runs: 0,
+                message: None,
+                queries: None,
+            });
+        claim.runs += 1;
+        claim.message = claim.message.take().or_else(|| record.message.clone());
+        claim.queries = claim.queries.take().or_else(|| record.queries.clone());
+    }
+    found.into_values().collect()
+}
+
+impl fmt::Display for Answer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Answer::Sat => "sat",
+            Answer::Unsat => "unsat",
+        })
+    }
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Status::Sat => "sat",
+            Status::Unsat => "unsat",
+            Status::Unknown => "unknown",
+            Status::Timeout => "timeout",
+            Status::Memout => "memout",
+            Status::Error => "error",
+            Status::Unsupported => "unsupported",
+        })
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Kind::Expected => "against the known status",
+            Kind::Disagreement => "solvers disagree",
+            Kind::SelfContradiction => "a solver contradicts itself",
+            Kind::WrongModel => "a model fails",
+            Kind::RefutedStrategy => "a strategy is refuted",
+        })
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Fault::Solver => "a solver's fault",
+            Fault::Ours => "a bug of hyperplan's until shown otherwise",
+        })
+    }
+}
+
+impl fmt::Display for Claim {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.who)?;
+        if let Some(answer) = self.answer {
+            write!(f, " says {answer}")?;
+        }
+        if let Some(verified) = &self.verified {
+            match verified.as_str() {
+                "refuted" => f.write_str(", refuted")?,
+                "model" => f.write_str(", model checked")?,
+                how => write!(f, ", verified {how}")?,
+            }
+        }
+        if self.runs > 1 {
+            write!(f, " ({} runs)", self.runs)?;
+        }
+        if let Some(message) = &self.message {
+            write!(f, ": {message}")?;
+        }
+        match &self.queries {
+            Some(queries) => write!(f, "; queries: {queries}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}, {}", self.instance, self.kind, self.fault)?;
+        match self.truth {
+            Some(truth) => write!(f, "; known: {truth}"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// A line for each finding, and an indented one for each claim.
+impl fmt::Display for Judgement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for finding in &self.findings {
+            writeln!(f, "{finding}")?;
+            for claim in &finding.claims {
+                writeln!(f, "  {claim}")?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,216 @@
+//! What a run's output means.
+
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+use crate::query::Query;
+use crate::record::{Answer, Status};
+use crate::supervise::{Exceeded, Measured};
+
+/// The longest message that is remembered.
+const MESSAGE: usize = 500;
+
+/// What a run came to.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Outcome {
+    pub(crate) status: Status,
+    pub(crate) expected: Option<Answer>,
+    pub(crate) verified: Option<String>,
+    pub(crate) version: Option<String>,
+    pub(crate) states: Option<String>,
+    pub(crate) quantifiers: Option<String>,
+    pub(crate) horizon: Option<u64>,
+    pub(crate) variables: Option<u64>,
+    pub(crate) assertions: Option<u64>,
+    pub(crate) message: Option<String>,
+}
+
+impl Outcome {
+    fn new(status: Status, message: Option<String>) -> Outcome {
+        Outcome {
+            status,
+            expected: None,
+            verified: None,
+            version: None,
+            states: None,
+            quantifiers: None,
+            horizon: None,
+            variables: None,
+            assertions: None,
+            message,
+        }
+    }
+}
+
+/// The part of `solve --format json` that is of interest.
+#[derive(Deserialize)]
+struct Said {
+    verdict: Verdict,
+    reason: Option<String>,
+    horizon: BTreeMap<String, Option<u64>>,
+    verified: Option<String>,
+    solver: Solver,
+    quantifiers: String,
+    states: String,
+    size: Size,
+}
+
+#[derive(Clone, Copy, PartialEq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Verdict {
+    Realizable,
+    Unrealizable,
+    Unknown,
+}
+
+#[derive(Deserialize)]
+struct Solver {
+    version: String,
+}
+
+#[derive(Deserialize)]
+struct Size {
+    variables: u64,
+    clauses: u64,
+}
+
+/// What `hyperplan solve --format json` came to.
+pub(crate) fn of_problem(measured: &Measured, over: bool) -> Outcome {
+    let said = measured.stdout.lines().find_map(|line| serde_json::from_str::<Said>(line).ok());
+    let status = limits(measured, over).or_else(|| {
+        Some(match (measured.exit_code?, said.as_ref()?.verdict) {
+            (0, Verdict::Realizable) => Status::Sat,
+            (1, Verdict::Unrealizable) => Status::Unsat,
+            (3, Verdict::Unknown) => match said.as_ref()?.reason.as_deref() {
+                Some("timeout") => Status::Timeout,
+                Some("out of memory") => Status::Memout,
+                _ => Status::Unknown,
+            },
+            _ => Status::Error,
+        })
+    });
+    let status = status.unwrap_or(match measured.exit_code {
+        Some(2) => Status::Unsupported,
+        Some(3) => Status::Unknown,
+        _ => Status::Error,
+    });
+    let errors = last_error(&measured.stderr);
+    let reason = said.as_ref().and_then(|said| said.reason.clone());
+    let message = match status {
+        Status::Sat | Status::Unsat => None,
+        Status::Error => errors.or(reason).or_else(|| silent(measured)),
+        _ => reason.or(errors),
+    };
+    let refuted = match measured.exit_code {
+        Some(5) => true,
+        Some(4) => message.as_deref().is_some_and(|message| message.contains("wrong model")),
+        _ => false,
+    };
+    let mut outcome = Outcome::new(status, message.map(shortened));
+    if refuted {
+        outcome.verified = Some("refuted".to_owned());
+    }
+    let Some(said) = said else { return outcome };
+    let some = |text: String| Some(text).filter(|text| !text.is_empty());
+    Outcome {
+        verified: outcome.verified.take().or(said.verified),
+        version: some(said.solver.version),
+        states: some(said.states),
+        quantifiers: some(said.quantifiers),
+        horizon: said.horizon.into_values().flatten().max(),
+        variables: Some(said.size.variables),
+        assertions: Some(said.size.clauses),
+        ..outcome
+    }
+}
+
+/// What a solver said to a query. Of several checks the first counts whose answer contradicts what is known, else the
+/// first that is undecided, else the last.
+pub(crate) fn of_query(measured: &Measured, query: &Query, over: bool) -> Outcome {
+    let answers: Vec<Status> = measured.stdout.lines().filter_map(answer).collect();
+    let error = measured.stdout.lines().map(str::trim).find(|line| line.starts_with("(error"));
+    let expected = query.checks.last().copied().flatten();
+    let trouble = |status, message: Option<String>| {
+        let message = message.or_else(|| last_error(&measured.stderr)).or_else(|| silent(measured));
+        Outcome { expected, ..Outcome::new(status, message.map(shortened)) }
+    };
+    if let Some(status) = limits(measured, over) {
+        return Outcome { expected, ..Outcome::new(status, None) };
+    }
+    let all = format!("{}\n{}", error.unwrap_or_default(), measured.stderr).to_lowercase();
+    if answers.len() < query.checks.len() || query.checks.is_empty() {
+        let status = match () {
+            () if answers.contains(&Status::Timeout) => Status::Timeout,
+            () if ["out of memory", "bad_alloc", "memory exhausted"].iter().any(|w| all.contains(w)) => {
+                Status::Memout
+            }
+            () if ["unsupported", "not supported"].iter().any(|w| all.contains(w)) => Status::Unsupported,
+            () => Status::Error,
+        };
+        return trouble(status, error.map(str::to_owned));
+    }
+    if measured.signal.is_some() {
+        return trouble(Status::Error, None);
+    }
+    let pairs = || answers.iter().copied().zip(query.checks.iter().copied());
+    let wrong = pairs().position(|(said, known)| known.is_some_and(|known| contradicts(said, known)));
+    let open = || answers.iter().position(|said| !matches!(said, Status::Sat | Status::Unsat));
+    let index = wrong.or_else(open).unwrap_or(query.checks.len() - 1);
+    let (status, expected) = pairs().nth(index).unwrap_or((Status::Error, expected));
+    let several = query.checks.len() > 1;
+    let message = (several && wrong.or_else(open).is_some())
+        .then(|| format!("check {} of {}", index + 1, query.checks.len()));
+    Outcome { expected, ..Outcome::new(status, message) }
+}
+
+fn contradicts(said: Status, known: Answer) -> bool {
+    matches!((said, known), (Status::Sat, Answer::Unsat) | (Status::Unsat, Answer::Sat))
+}
+
+/// The answer that a line is.
+fn answer(line: &str) -> Option<Status> {
+    match line.trim() {
+        "sat" => Some(Status::Sat),
+        "unsat" => Some(Status::Unsat),
+        "unknown" => Some(Status::Unknown),
+        "timeout" => Some(Status::Timeout),
+        _ => None,
+    }
+}
+
+/// Whether a limit decided; what was said after the time was over does not count.
+fn limits(measured: &Measured, over: bool) -> Option<Status> {
+    match measured.exceeded {
+        Some(Exceeded::Time) => Some(Status::Timeout),
+        Some(Exceeded::Memory) => Some(Status::Memout),
+        // Failures stay failures, whenever they come.
+        None if over && !matches!(measured.exit_code, Some(4..) | None) => Some(Status::Timeout),
+        None => None,
+    }
+}
+
+/// The last error on standard error, or else the last line.
+fn last_error(stderr: &str) -> Option<String> {
+    let lines = || stderr.lines().map(str::trim).filter(|line| !line.is_empty()).rev();
+    let error = lines().find_map(|line| line.strip_prefix("error: "));
+    error.or_else(|| lines().next()).map(str::to_owned)
+}
+
+/// How a program ended that said nothing.
+fn silent(measured: &Measured) -> Option<String> {
+    Some(match (measured.signal, measured.exit_code) {
+        (Some(signal), _) => format!("ended by signal {signal}"),
+        (None, Some(code)) => format!("no answer, exit status {code}"),
+        (None, None) => "no answer".to_owned(),
+    })
+}
+
+fn shortened(message: String) -> String {
+    match message.char_indices().nth(MESSAGE) {
+        Some((end, _)) => format!("{}...", &message[..end]),
+        None => message,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,112 @@
+use super::*;
+
+fn ended(code: i32, stdout: &str, stderr: &str) -> Measured {
+    Measured {
+        exit_code: Some(code),
+        stdout: stdout.to_owned(),
+        stderr: stderr.to_owned(),
+        ..Measured::default()
+    }
+}
+
+fn said(verdict: &str, reason: Option<&str>) -> String {
+    let reason = serde_json::to_string(&reason).expect("it is a text");
+    format!(
+        r#"{{"file": "a.hp", "objective": "sp", "verdict": "{verdict}", "reason": {reason}, "horizon": {{"p": 6, "q": null}},
+        "verified": "by-search", "solver": {{"name": "z3", "version": "4.8"}}, "quantifiers": "expand", "states": "onehot",
+        "size": {{"variables": 3, "clauses": 4}}}}"#
+    )
+    .replace('\n', " ")
+}
+
+#[test]
+fn answers_to_problems() {
+    let outcome = of_problem(&ended(0, &said("realizable", None), ""), false);
+    let expected = Outcome {
+        status: Status::Sat,
+        expected: None,
+        verified: Some("by-search".to_owned()),
+        version: Some("4.8".to_owned()),
+        states: Some("onehot".to_owned()),
+        quantifiers: Some("expand".to_owned()),
+        horizon: Some(6),
+        variables: Some(3),
+        assertions: Some(4),
+        message: None,
+    };
+    assert_eq!(outcome, expected);
+    let status = |code, verdict, reason| of_problem(&ended(code, &said(verdict, reason), ""), false).status;
+    assert_eq!(status(1, "unrealizable", None), Status::Unsat);
+    assert_eq!(status(3, "unknown", Some("timeout")), Status::Timeout);
+    assert_eq!(status(3, "unknown", Some("out of memory")), Status::Memout);
+    assert_eq!(status(3, "unknown", Some("incomplete")), Status::Unknown);
+    // A status that does not go with what was said is not to be believed.
+    assert_eq!(status(1, "realizable", None), Status::Error);
+    assert_eq!(of_problem(&ended(0, &said("realizable", None), ""), true).status, Status::Timeout);
+}
+
+#[test]
+fn failures_on_problems() {
+    let outcome = of_problem(&ended(2, "", "error: sp: no quantifiers\n"), false);
+    assert_eq!(
+        (outcome.status, outcome.message.as_deref()),
+        (Status::Unsupported, Some("sp: no quantifiers"))
+    );
+    let wrong = "warning: x\nerror: sp: solver fake gave a wrong model: it does not satisfy the query\n";
+    for over in [false, true] {
+        let outcome = of_problem(&ended(4, "", wrong), over);
+        assert_eq!((outcome.status, outcome.verified.as_deref()), (Status::Error, Some("refuted")));
+    }
+    let outcome = of_problem(&ended(4, "", "error: sp: solver fake ended without an answer\n"), false);
+    assert_eq!((outcome.status, outcome.verified), (Status::Error, None));
+    assert_eq!(of_problem(&ended(5, "", "error: x"), false).verified.as_deref(), Some("refuted"));
+    let killed = Measured { signal: Some(11), ..Measured::default() };
+    let outcome = of_problem(&killed, false);
+    assert_eq!((outcome.status, outcome.message.as_deref()), (Status::Error, Some("ended by signal 11")));
+    let killed = Measured { signal: Some(9), exceeded: Some(Exceeded::Memory), ..Measured::default() };
+    assert_eq!(of_problem(&killed, false).status, Status::Memout);
+    let long = of_problem(&ended(4, "", &"ä".repeat(2000)), false).message.expect("there is one");
+    assert_eq!(long.chars().count(), MESSAGE + 3);
+}
+
+fn query(checks: &[Option<Answer>]) -> Query {
+    Query { checks: checks.to_vec(), ..Query::default() }
+}
+
+#[test]
+fn answers_to_queries() {
+    let of = |stdout: &str, checks: &[Option<Answer>]| {
+        let outcome = of_query(&ended(0, stdout, ""), &query(checks), false);
+        (outcome.status, outcome.expected, outcome.message)
+    };
+    let (sat, unsat) = (Some(Answer::Sat), Some(Answer::Unsat));
+    assert_eq!(of("sat\n((define-fun x () Bool\n true))\n", &[None]), (Status::Sat, None, None));
+    assert_eq!(of("success\n unsat \r\n", &[sat]), (Status::Unsat, sat, None));
+    assert_eq!(of("unknown\n", &[sat]), (Status::Unknown, sat, None));
+    assert_eq!(of("timeout\n", &[sat]), (Status::Timeout, sat, None));
+    assert_eq!(of("sat\nunsat\n", &[sat, unsat]), (Status::Unsat, unsat, None));
+    let first = Some("check 1 of 2".to_owned());
+    assert_eq!(of("sat\nunsat\n", &[unsat, unsat]), (Status::Sat, unsat, first.clone()));
+    assert_eq!(of("unknown\nunsat\n", &[None, unsat]), (Status::Unknown, None, first));
+    assert_eq!(of("unsat\n(error \"no model\")\n", &[None]).0, Status::Unsat);
+    assert_eq!(of("sat\n", &[None, None]).0, Status::Error);
+}
+
+#[test]
+fn failures_on_queries() {
+    let of = |code, stdout: &str, stderr: &str| {
+        let outcome = of_query(&ended(code, stdout, stderr), &query(&[None]), false);
+        (outcome.status, outcome.message.expect("it says why"))
+    };
+    assert_eq!(of(1, "(error \"line 1: no\")\n", ""), (Status::Error, "(error \"line 1: no\")".to_owned()));
+    assert_eq!(of(1, "(error \"logic not supported\")\n", "").0, Status::Unsupported);
+    assert_eq!(of(1, "", "terminate called: std::bad_alloc\n").0, Status::Memout);
+    assert_eq!(of(0, "satisfiable", ""), (Status::Error, "no answer, exit status 0".to_owned()));
+    assert_eq!(of(0, "", "").0, Status::Error);
+    let crash = Measured { signal: Some(6), stdout: "sat\n".to_owned(), ..Measured::default() };
+    assert_eq!(of_query(&crash, &query(&[None]), false).status, Status::Error);
+    let late = Measured { exceeded: Some(Exceeded::Time), stdout: "sat\n".to_owned(), ..Measured::default() };
+    assert_eq!(of_query(&late, &query(&[None]), false).status, Status::Timeout);
+    // A file without a check asks nothing.
+    assert_eq!(of_query(&ended(0, "", ""), &query(&[]), false).status, Status::Error);
+}

@@ -1,0 +1,367 @@
+//! Runs, several at a time.
+
+use std::fs;
+use std::io::{self, Read as _, Write as _};
+use std::os::unix::process::CommandExt as _;
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+use std::time::Duration;
+
+use crate::outcome::{self, Outcome};
+use crate::plan::{Kind, Run};
+use crate::query::Query;
+use crate::record::Record;
+use crate::supervise::{Job, Measured};
+
+/// How often the flag of an interruption is looked at.
+const TICK: Duration = Duration::from_millis(100);
+/// How long hyperplan may take to end by itself when its time is over.
+const GRACE: f64 = 2.0;
+/// The folder for what runs leave that went wrong.
+const EVIDENCE: &str = "evidence";
+
+/// How runs are done.
+#[derive(Clone, Debug)]
+pub struct Setting {
+    /// How many at a time.
+    pub jobs: usize,
+    /// The `hyperplan` program.
+    pub hyperplan: PathBuf,
+    /// Its arguments that make it [`supervise`](crate::supervise()).
+    pub supervisor: Vec<String>,
+    /// The folder of the comparison.
+    pub folder: PathBuf,
+    /// Whether to keep the queries of each run.
+    pub queries: bool,
+    /// The machine.
+    pub host: String,
+}
+
+/// What happens to a run.
+#[derive(Debug)]
+pub enum Event<'a> {
+    /// It begins.
+    Started(&'a Run),
+    /// It has ended.
+    Finished(Box<Record>),
+}
+
+/// Does the runs, and tells of each. Gives whether all were done; `cancelled` ends those that are going on, of which
+/// nothing is told. So does a failure of `tell`.
+///
+/// # Errors
+/// When our own program cannot be started, files cannot be written, or `tell` fails.
+pub fn run_all<E: From<io::Error> + Send>(
+    runs: &[Run],
+    setting: &Setting,
+    cancelled: &AtomicBool,
+    mut tell: impl FnMut(Event<'_>) -> Result<(), E>,
+) -> Result<bool, E> {
+    let outcome = work(runs, setting, cancelled, &mut tell);
+    // Unless there is evidence in it.
+    let _ = fs::remove_dir(setting.folder.join(EVIDENCE));
+    outcome
+}
+
+fn work<E: From<io::Error> + Send>(
+    runs: &[Run],
+    setting: &Setting,
+    cancelled: &AtomicBool,
+    tell: &mut impl FnMut(Event<'_>) -> Result<(), E>,
+) -> Result<bool, E> {
+    let next = AtomicUsize::new(0);
+    let lifelines = Lifelines::default();
+    let (sender, events) = mpsc::channel();
+    thread::scope(|scope| {
+        for _ in 0..setting.jobs.clamp(1, runs.len().max(1)) {
+            let (sender, next, lifelines) = (sender.clone(), &next, &lifelines);
+            scope.spawn(move || {
+                while let Some(run) = runs.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    // Nobody listens any more where that fails.
+                    let going = sender.send(Ok(Event::Started(run))).is_ok() && !lifelines.are_cut();
+                    let finished = going.then(|| one(run, setting, lifelines)).transpose();
+                    match finished.map(Option::flatten).transpose() {
+                        Some(finished) => {
+                            let _ = sender.send(finished.map(|record| Event::Finished(Box::new(record))));
+                        }
+                        None => return,
+                    }
+                }
+            });
+        }
+        drop(sender);
+        let mut finished = 0;
+        let outcome = loop {
+            match events.recv_timeout(TICK) {
+                Ok(event) => {
+                    finished += usize::from(matches!(event, Ok(Event::Finished(_))));
+                    if let Err(error) = event.map_err(E::from).and_then(&mut *tell) {
+                        break Err(error);
+                    }
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => break Ok(finished == runs.len()),
+            }
+            if cancelled.load(Ordering::SeqCst) {
+                lifelines.cut();
+                // What has ended meanwhile was done.
+                while let Ok(event) = events.recv() {
+                    finished += usize::from(matches!(event, Ok(Event::Finished(_))));
+                    if let Ok(event @ Event::Finished(_)) = event {
+                        tell(event)?;
+                    }
+                }
+                break Ok(finished == runs.len());
+            }
+        };
+        lifelines.cut();
+        outcome
+    })
+}
+
+/// The inputs of all supervisors. When they are closed, these end everything.
+#[derive(Default)]
+struct Lifelines(Mutex<State>);
+
+#[derive(Default)]
+struct State {
+    cut: bool,
+    open: Vec<(u32, ChildStdin)>,
+}
+
+impl Lifelines {
+    fn are_cut(&self) -> bool {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).cut
+    }
+
+    /// Holds the line to a supervisor; it is closed at once where all were cut.
+    fn hold(&self, id: u32, line: ChildStdin) {
+        let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if !state.cut {
+            state.open.push((id, line));
+        }
+    }
+
+    fn release(&self, id: u32) {
+        let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        state.open.retain(|(other, _)| *other != id);
+    }
+
+    fn cut(&self) {
+        let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        state.cut = true;
+        state.open.clear();
+    }
+}
+
+/// Does one run; `None` where it was interrupted.
+fn one(run: &Run, setting: &Setting, lifelines: &Lifelines) -> io::Result<Option<Record>> {
+    let folders = Folders::new(run, setting)?;
+    let measured = match &run.instance.kind {
+        Kind::Query(query) => measure(&query_job(run, query, &folders), setting, lifelines),
+        Kind::Problem { objective } => {
+            measure(&problem_job(run, objective, setting, &folders), setting, lifelines)
+        }
+    };
+    // The run that was interrupted is done again, and its queries with it.
+    let keep = |measured: &Measured| measured.exit_code.is_some_and(|code| code >= 4);
+    folders.tidy(measured.as_ref().is_ok_and(|measured| measured.as_ref().is_some_and(keep)))?;
+    let Some(measured) = measured? else { return Ok(None) };
+    Ok(Some(record(run, setting, &measured, &folders)))
+}
+
+/// Has a supervisor do the job.
+fn measure(job: &Job, setting: &Setting, lifelines: &Lifelines) -> io::Result<Option<Measured>> {
+    let mut command = Command::new(&setting.hyperplan);
+    // In a group of its own: what is typed at the terminal is for us.
+    command.args(&setting.supervisor).process_group(0);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
+    let mut child: Child = command.spawn()?;
+    let mut line = serde_json::to_vec(job)?;
+    line.push(b'\n');
+    if let Some(mut stdin) = child.stdin.take() {
+        // If it has ended, it gives no outcome either.
+        let _ = stdin.write_all(&line);
+        lifelines.hold(child.id(), stdin);
+    }
+    let mut said = String::new();
+    let read = child.stdout.take().map_or(Ok(0), |mut stdout| stdout.read_to_string(&mut said));
+    let status = child.wait();
+    lifelines.release(child.id());
+    read?;
+    match serde_json::from_str(&said) {
+        Ok(measured) => Ok(Some(measured)),
+        Err(_) if lifelines.are_cut() => Ok(None),
+        Err(_) => Err(io::Error::other(format!("the process that measures a run ended: {}", status?))),
+    }
+}
+
+/// Folders of a run, relative to that of the comparison.
+struct Folders {
+    base: PathBuf,
+    /// Where its queries are kept.
+    queries: Option<String>,
+    /// For temporary files, which are kept where something went wrong: there may be evidence among them.
+    temporary: String,
+}
+
+impl Folders {
+    fn new(run: &Run, setting: &Setting) -> io::Result<Folders> {
+        let problem = matches!(run.instance.kind, Kind::Problem { .. });
+        let folders = Folders {
+            base: setting.folder.clone(),
+            queries: (setting.queries && problem).then(|| format!("queries/{}", run.key)),
+            temporary: format!("{EVIDENCE}/{}", run.key),
+        };
+        // Of a run that was interrupted.
+        for folder in folders.queries.iter().chain([&folders.temporary]) {
+            match fs::remove_dir_all(folders.base.join(folder)) {
+                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+                _ => {}
+            }
+            fs::create_dir_all(folders.base.join(folder))?;
+        }
+        Ok(folders)
+    }
+
+    fn full(&self, folder: &str) -> String {
+        self.base.join(folder).display().to_string()
+    }
+
+    /// Removes temporary files, unless they are to be kept.
+    fn tidy(&self, keep: bool) -> io::Result<()> {
+        let temporary = self.base.join(&self.temporary);
+        if !keep {
+            fs::remove_dir_all(&temporary)?;
+        }
+        // Where it is empty.
+        let _ = fs::remove_dir(&temporary);
+        Ok(())
+    }
+
+    /// The largest query that was kept.
+    fn largest(&self) -> Option<(u64, Query)> {
+        let folder = self.base.join(self.queries.as_ref()?);
+        let files = fs::read_dir(folder).ok()?.flatten();
+        let sized = files.filter_map(|file| Some((file.metadata().ok()?.len(), file.path())));
+        let (bytes, path): (u64, PathBuf) = sized.max()?;
+        Some((bytes, Query::scan(&fs::read_to_string(path).ok()?)))
+    }
+}
+
+fn problem_job(run: &Run, objective: &str, setting: &Setting, folders: &Folders) -> Job {
+    let mut arguments: Vec<String> =
+        ["solve", &run.instance.file, "--objective", objective].map(str::to_owned).to_vec();
+    let mut option = |name: &str, value: String| arguments.extend([name.to_owned(), value]);
+    option("--solver", run.solver.name.clone());
+    option("--seed", run.seed.to_string());
+    option("--format", "json".to_owned());
+    let encoding = [("--quantifiers", &run.quantifiers), ("--states", &run.states)];
+    for (name, value) in encoding.into_iter().filter_map(|(name, value)| Some((name, value.clone()?))) {
+        option(name, value);
+    }
+    run.instance.set.iter().for_each(|set| option("--set", set.clone()));
+    if let Some(seconds) = run.limit.wall_s {
+        option("--timeout", seconds.to_string());
+    }
+    if let Some(mib) = run.limit.memory_mib {
+        option("--memory", mib.to_string());
+    }
+    if let Some(folder) = &folders.queries {
+        option("--queries", folders.full(folder));
+    }
+    arguments.extend(run.options.iter().cloned());
+    Job {
+        program: setting.hyperplan.display().to_string(),
+        arguments,
+        temporary: folders.full(&folders.temporary),
+        prefix: String::new(),
+        input: None,
+        limit: run.limit,
+        grace_s: GRACE,
+    }
+}
+
+fn query_job(run: &Run, query: &Query, folders: &Folders) -> Job {
+    let file = &run.instance.file;
+    let standalone = run.solver.standalone.as_ref();
+    let (arguments, from_input) =
+        standalone.map_or_else(Default::default, |standalone| standalone.arguments(file, query.incremental));
+    let seed = standalone.filter(|_| run.seed != 0).and_then(|standalone| standalone.seed(run.seed));
+    Job {
+        program: standalone.map_or_else(String::new, |standalone| standalone.program.display().to_string()),
+        arguments,
+        temporary: folders.full(&folders.temporary),
+        prefix: seed.unwrap_or_default(),
+        input: from_input.then(|| file.clone()),
+        limit: run.limit,
+        grace_s: 0.0,
+    }
+}
+
+fn record(run: &Run, setting: &Setting, measured: &Measured, folders: &Folders) -> Record {
+    let Run { instance, solver, limit, .. } = run;
+    let past = |limit: Option<f64>, used: f64| limit.is_some_and(|limit| used > limit);
+    let over = past(limit.wall_s, measured.wall_s) || past(limit.cpu_s, measured.cpu_s);
+    let kept = folders.largest();
+    let query = match &instance.kind {
+        Kind::Query(query) => Some((query.bytes, query)),
+        Kind::Problem { .. } => kept.as_ref().map(|(bytes, query)| (*bytes, query)),
+    };
+    let outcome: Outcome = match &instance.kind {
+        Kind::Query(query) => outcome::of_query(measured, query, over),
+        Kind::Problem { .. } => outcome::of_problem(measured, over),
+    };
+    let size = |of: fn(&Query) -> u64| query.map(|(_, query)| of(query));
+    Record {
+        instance: instance.name.clone(),
+        family: instance.family.clone(),
+        sha256: instance.sha256.clone(),
+        logic: query.and_then(|(_, query)| query.logic.clone()),
+        states: run.states.clone(),
+        quantifiers: run.quantifiers.clone(),
+        horizon: instance.horizon.or(outcome.horizon),
+        set: instance.set.clone(),
+        solver: solver.name.clone(),
+        version: outcome.version.or_else(|| solver.version.clone()),
+        options: run.options.join(" "),
+        seed: run.seed,
+        repetition: run.repetition,
+        status: outcome.status,
+        expected: outcome.expected,
+        verified: outcome.verified,
+        wall_s: rounded(measured.wall_s),
+        cpu_s: rounded(measured.cpu_s),
+        memory_mib: rounded(measured.memory_mib),
+        limit: *limit,
+        exit_code: measured.exit_code,
+        signal: measured.signal,
+        host: setting.host.clone(),
+        variables: outcome.variables.or_else(|| size(|query| query.variables)),
+        assertions: outcome.assertions.or_else(|| size(|query| query.assertions)),
+        bytes: query.map(|(bytes, _)| bytes),
+        message: measured.failure.clone().or(outcome.message),
+        queries: folders.queries.clone(),
+        key: run.key.clone(),
+        states_used: outcome.states,
+        quantifiers_used: outcome.quantifiers,
+    }
+}
+
+/// To what can be measured.
+fn rounded(number: f64) -> f64 {
+    (number * 1e6).round() / 1e6
+}
+
+/// The folder, made if need be, as a path that does not depend on the current folder.
+///
+/// # Errors
+/// When it cannot be made.
+pub fn prepare(folder: &Path) -> io::Result<PathBuf> {
+    fs::create_dir_all(folder)?;
+    folder.canonicalize()
+}

@@ -1,0 +1,149 @@
+//! What an SMT-LIB file says of itself, read without understanding its terms.
+
+use crate::record::Answer;
+
+/// An SMT-LIB 2 file, from outside.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Query {
+    /// The logic that it sets.
+    pub logic: Option<String>,
+    /// Its checks in order, each with the `:status` said before it.
+    pub checks: Vec<Option<Answer>>,
+    /// Whether it takes a solver that can be asked again: assertions are taken back, or there are several checks.
+    pub incremental: bool,
+    /// Symbols that it declares.
+    pub variables: u64,
+    /// Its assertions.
+    pub assertions: u64,
+    /// Its length.
+    pub bytes: u64,
+}
+
+impl Query {
+    /// Reads the text of a file. Text that is no SMT-LIB has no checks.
+    #[must_use]
+    pub fn scan(text: &str) -> Query {
+        let mut query = Query { bytes: text.len() as u64, ..Query::default() };
+        let mut status = None;
+        let mut depth = 0_usize;
+        // The first words of the command that is being read.
+        let mut words: Vec<&str> = Vec::new();
+        for token in Tokens(text) {
+            match token {
+                "(" => {
+                    depth += 1;
+                    if depth == 1 {
+                        words.clear();
+                    }
+                }
+                ")" => {
+                    depth = depth.saturating_sub(1);
+                    if depth == 0 {
+                        query.command(&words, &mut status);
+                    }
+                }
+                word if depth == 1 && words.len() < 3 => words.push(word),
+                _ => {}
+            }
+        }
+        query.incremental |= query.checks.len() > 1;
+        query
+    }
+
+    fn command(&mut self, words: &[&str], status: &mut Option<Answer>) {
+        match words {
+            ["set-logic", logic, ..] => self.logic = Some((*logic).to_owned()),
+            ["set-info", ":status", said, ..] => {
+                *status = match *said {
+                    "sat" => Some(Answer::Sat),
+                    "unsat" => Some(Answer::Unsat),
+                    _ => None,
+                };
+            }
+            ["declare-fun" | "declare-const", ..] => self.variables += 1,
+            ["assert", ..] => self.assertions += 1,
+            ["push" | "pop" | "reset" | "reset-assertions", ..] => self.incremental = true,
+            ["check-sat", ..] => self.checks.push(status.take()),
+            ["check-sat-assuming", ..] => {
+                self.incremental = true;
+                self.checks.push(status.take());
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Parentheses, and what stands between them and blanks: words, strings and quoted symbols. Comments are left out.
+struct Tokens<'a>(&'a str);
+
+impl<'a> Iterator for Tokens<'a> {
+    type Item = &'a str;
+
+    fn next(&mut self) -> Option<&'a str> {
+        loop {
+            self.0 = self.0.trim_start();
+            if !self.0.starts_with(';') {
+                break;
+            }
+            let end = self.0.find('\n').unwrap_or(self.0.len());
+            self.0 = &self.0[end..];
+        }
+        let length = match self.0.as_bytes().first()? {
+            b'(' | b')' => 1,
+            b'|' => quoted(self.0, '|'),
+            // A doubled quote inside of a string makes two strings of it, which are just as well passed over.
+            b'"' => quoted(self.0, '"'),
+            _ => self
+                .0
+                .find(|c: char| c.is_whitespace() || matches!(c, '(' | ')' | ';' | '"' | '|'))
+                .unwrap_or(self.0.len()),
+        };
+        let (token, rest) = self.0.split_at(length);
+        self.0 = rest;
+        Some(token)
+    }
+}
+
+/// How long something in quotes is, with them.
+fn quoted(text: &str, quote: char) -> usize {
+    text[1..].find(quote).map_or(text.len(), |end| end + 2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_file_says_of_itself() {
+        let text = "; (check-sat) (set-logic ALL)\n(set-logic QF_LIA)(set-info :source |\n(check-sat) |)\n\
+                    (set-info :note \"(assert \"\"x\"\")\")(set-info :status unsat)\n(declare-fun x () Int) \
+                    (declare-const |a b| Bool)\n(assert (and |a b| (> x 0)));)\n(assert (< x 0))\n(check-sat)\n";
+        let query = Query::scan(text);
+        let expected = Query {
+            logic: Some("QF_LIA".to_owned()),
+            checks: vec![Some(Answer::Unsat)],
+            incremental: false,
+            variables: 2,
+            assertions: 2,
+            bytes: text.len() as u64,
+        };
+        assert_eq!(query, expected);
+    }
+
+    #[test]
+    fn a_status_is_that_of_the_next_check() {
+        let text = "(check-sat)(set-info :status sat)(push 1)(check-sat)(check-sat-assuming (p))";
+        let query = Query::scan(text);
+        assert_eq!(query.checks, [None, Some(Answer::Sat), None]);
+        assert!(query.incremental);
+    }
+
+    #[test]
+    fn damage_does_no_harm() {
+        for text in
+            ["", ")", "((((", "(assert \"", "(set-info :status |", "(set-info :status)", "é|", "(check-sat"]
+        {
+            assert_eq!(Query::scan(text).checks, [], "{text}");
+        }
+    }
+}

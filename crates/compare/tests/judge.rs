@@ -1,0 +1,132 @@
+//! What is found wrong, and whose fault it is.
+
+mod sample;
+
+use hyperplan_compare::{Answer, Fault, Kind, Record, Status, judge};
+use sample::{run, sample};
+
+fn kinds(records: &[Record]) -> Vec<(Kind, Fault)> {
+    judge(records).findings.iter().map(|finding| (finding.kind, finding.fault)).collect()
+}
+
+/// A run whose answer nothing vouches for.
+fn said(solver: &str, status: Status) -> Record {
+    Record { verified: None, ..run(solver, "f.hp#o", status, 1.0) }
+}
+
+fn mode(solver: &str, quantifiers: &str, status: Status) -> Record {
+    Record { quantifiers: Some(quantifiers.to_owned()), ..said(solver, status) }
+}
+
+fn query(solver: &str, status: Status) -> Record {
+    Record { quantifiers: None, states: None, ..said(solver, status) }
+}
+
+#[test]
+fn agreement_is_clean() {
+    let records = [said("z3", Status::Sat), said("cvc5", Status::Sat), said("yices", Status::Timeout)];
+    let judgement = judge(&records);
+    assert!(judgement.is_clean());
+    assert_eq!(judgement.exit_code(), 0);
+    assert_eq!(judgement.to_string(), "");
+    assert!(judge(&[]).is_clean());
+}
+
+#[test]
+fn solvers_that_got_the_same_blame_themselves() {
+    let records = [said("z3", Status::Sat), said("cvc5", Status::Unsat)];
+    assert_eq!(kinds(&records), [(Kind::Disagreement, Fault::Solver)]);
+    assert_eq!(judge(&records).exit_code(), 4);
+    let queries = [query("z3", Status::Sat), query("cvc5", Status::Unsat)];
+    assert_eq!(kinds(&queries), [(Kind::Disagreement, Fault::Solver)]);
+}
+
+#[test]
+fn different_encodings_that_disagree_blame_us() {
+    let records = [mode("z3", "keep", Status::Sat), mode("z3", "expand", Status::Unsat)];
+    assert_eq!(kinds(&records), [(Kind::SelfContradiction, Fault::Ours)]);
+    assert_eq!(judge(&records).exit_code(), 5);
+    let records = [mode("z3", "keep", Status::Sat), mode("cvc5", "expand", Status::Unsat)];
+    assert_eq!(kinds(&records), [(Kind::Disagreement, Fault::Ours)]);
+    // All that were asked one way say the same, and are wrong.
+    let records = [
+        Record { verified: Some("by-search".to_owned()), ..mode("z3", "keep", Status::Sat) },
+        mode("z3", "expand", Status::Unsat),
+        mode("cvc5", "expand", Status::Unsat),
+    ];
+    assert_eq!(kinds(&records), [(Kind::Disagreement, Fault::Ours)]);
+}
+
+/// What `auto` became is what was asked.
+#[test]
+fn the_encodings_that_were_used() {
+    let used =
+        |quantifiers: &str, record| Record { quantifiers_used: Some(quantifiers.to_owned()), ..record };
+    let records = [used("keep", said("z3", Status::Sat)), used("expand", said("cvc5", Status::Unsat))];
+    assert_eq!(kinds(&records), [(Kind::Disagreement, Fault::Ours)]);
+    let records = [used("keep", said("z3", Status::Sat)), used("keep", mode("cvc5", "keep", Status::Unsat))];
+    assert_eq!(kinds(&records), [(Kind::Disagreement, Fault::Solver)]);
+}
+
+#[test]
+fn one_solver_and_two_seeds() {
+    let records = [said("z3", Status::Sat), Record { seed: 1, ..said("z3", Status::Unsat) }];
+    assert_eq!(kinds(&records), [(Kind::SelfContradiction, Fault::Solver)]);
+}
+
+#[test]
+fn a_checked_witness_tells_who_is_wrong() {
+    let right = Record { verified: Some("by-search".to_owned()), ..said("z3", Status::Sat) };
+    let records = [right.clone(), said("builtin", Status::Unsat)];
+    assert_eq!(kinds(&records), [(Kind::Disagreement, Fault::Ours)], "the embedded engine is ours");
+    assert_eq!(judge(&records).findings[0].truth, Some(Answer::Sat));
+    assert_eq!(kinds(&[right, said("cvc5", Status::Unsat)]), [(Kind::Disagreement, Fault::Solver)]);
+}
+
+#[test]
+fn other_constants_and_other_files_are_other_instances() {
+    let sat = said("z3", Status::Sat);
+    let set = Record { set: vec!["T=1".to_owned()], ..said("z3", Status::Unsat) };
+    let edited = Record { sha256: "0".to_owned(), ..said("z3", Status::Unsat) };
+    assert!(judge(&[sat, set, edited]).is_clean());
+}
+
+#[test]
+fn against_the_known_status() {
+    let known = |record| Record { expected: Some(Answer::Unsat), ..record };
+    assert_eq!(kinds(&[known(said("z3", Status::Sat))]), [(Kind::Expected, Fault::Ours)]);
+    assert_eq!(kinds(&[known(query("z3", Status::Sat))]), [(Kind::Expected, Fault::Solver)]);
+    let both = [known(said("z3", Status::Sat)), known(said("cvc5", Status::Unsat))];
+    assert_eq!(kinds(&both), [(Kind::Expected, Fault::Solver), (Kind::Disagreement, Fault::Solver)]);
+}
+
+#[test]
+fn witnesses_that_fail() {
+    let refuted = |record| Record { verified: Some("refuted".to_owned()), ..record };
+    assert_eq!(kinds(&[refuted(query("z3", Status::Sat))]), [(Kind::WrongModel, Fault::Solver)]);
+    assert_eq!(kinds(&[refuted(said("z3", Status::Sat))]), [(Kind::RefutedStrategy, Fault::Ours)]);
+    let bug = Record { exit_code: Some(5), ..said("z3", Status::Error) };
+    assert_eq!(kinds(&[bug]), [(Kind::RefutedStrategy, Fault::Ours)]);
+    let missing = Record { message: Some("no such solver".to_owned()), ..said("z3", Status::Error) };
+    assert!(judge(&[missing]).is_clean());
+    // What is refuted contradicts nobody.
+    let records = [refuted(query("z3", Status::Sat)), query("cvc5", Status::Unsat)];
+    assert_eq!(kinds(&records), [(Kind::WrongModel, Fault::Solver)]);
+}
+
+#[test]
+fn what_is_printed() {
+    let expected = "\
+specs/known.hp#k: against the known status, a bug of hyperplan's until shown otherwise; known: unsat
+  z3 keep says sat: said \"sat\", </script> and more
+specs/known.hp#k: solvers disagree, a bug of hyperplan's until shown otherwise; known: unsat
+  z3 keep says sat: said \"sat\", </script> and more
+  builtin auto says unsat
+  cvc5 auto says unsat
+  z3 expand says unsat
+specs/model.hp#m: a model fails, a solver's fault; known: sat
+  cvc5 auto: solver cvc5 gave a wrong model: it does not satisfy the query; queries: queries/model/cvc5
+";
+    assert_eq!(judge(&sample()).to_string(), expected);
+    assert_eq!(judge(&sample()).exit_code(), 5);
+}

@@ -1,0 +1,267 @@
+//! `hyperplan compare`: solvers and encodings over problems.
+
+use crate::args;
+use crate::config;
+use crate::configuration;
+use crate::failure::{Failure, Outcome, Status};
+use crate::instances::instances;
+use crate::output::Output;
+use crate::progress::Progress;
+use crate::signals;
+use clap::ValueEnum;
+use hyperplan_compare::benchexec::{Configuration, Problem};
+use hyperplan_compare::plan::{Candidate, Instance, Kind, Run, Ways, plan};
+use hyperplan_compare::report::write_all;
+use hyperplan_compare::{
+    Event, Limit, Log, LogError, Past, Record, Setting, judge, prepare, run_all, summary,
+};
+use hyperplan_solver::{Error, Options, open};
+use std::collections::{BTreeMap, BTreeSet};
+use std::io;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+const LOG: &str = "runs.jsonl";
+
+pub(crate) fn run(args: &args::Compare, quiet: bool, out: &mut Output) -> Outcome {
+    if args.files.is_empty() {
+        return again(&args.out, out);
+    }
+    let ways = ways(args)?;
+    let solvers = candidates(args.solver.as_deref())?;
+    let instances = instances(args, out)?;
+    if let Some(folder) = &args.benchexec {
+        return benchexec(folder, &instances, &solvers, &ways);
+    }
+    let runs = plan(&instances, &solvers, &ways);
+    if runs.is_empty() {
+        return Err(Failure::input("there is nothing to run: the builtin solver reads no SMT-LIB files"));
+    }
+    let cannot =
+        |error: io::Error| Failure::input(format_args!("cannot write {}: {error}", args.out.display()));
+    let folder = prepare(&args.out).map_err(cannot)?;
+    let (mut log, past) = Log::open(&args.out.join(LOG)).map_err(Failure::input)?;
+    past.notes.iter().for_each(|note| out.remark(format_args!("note: {note}")));
+    let setting = Setting {
+        jobs: args.jobs.into(),
+        hyperplan: std::env::current_exe().map_err(Failure::input)?,
+        supervisor: vec!["supervise".to_owned()],
+        folder,
+        queries: args.queries,
+        host: rustix::system::uname().nodename().to_string_lossy().into_owned(),
+    };
+    let mut done = by_key(past.records, &runs);
+    let missing: Vec<Run> = runs.iter().filter(|run| !done.contains_key(&run.key)).cloned().collect();
+    if !done.is_empty() {
+        out.remark(format_args!(
+            "note: {} of {} runs were done before",
+            runs.len() - missing.len(),
+            runs.len()
+        ));
+    }
+    if !do_all(&missing, &setting, &mut log, &mut done, Progress::new(missing.len(), quiet, out))? {
+        out.error(format_args!(
+            "interrupted: {} of {} runs are done, and kept in {}; the same command does the others",
+            done.len(),
+            runs.len(),
+            args.out.join(LOG).display()
+        ));
+        return Ok(Status::Undecided);
+    }
+    let records: Vec<Record> = runs.iter().filter_map(|run| done.remove(&run.key)).collect();
+    report(&records, &args.out, out)
+}
+
+/// Does what is missing; whether all of it was done.
+fn do_all(
+    missing: &[Run],
+    setting: &Setting,
+    log: &mut Log,
+    done: &mut BTreeMap<String, Record>,
+    mut progress: Progress<'_>,
+) -> Outcome<bool> {
+    let cancelled = Arc::new(AtomicBool::new(false));
+    signals::watch(&cancelled);
+    let labels: BTreeMap<&str, String> = missing.iter().map(|run| (run.key.as_str(), run.label())).collect();
+    let tell = |event: Event<'_>| -> Result<(), Stop> {
+        match event {
+            Event::Started(run) => progress.started(&run.label()),
+            Event::Finished(record) => {
+                log.append(&record)?;
+                progress.finished(labels.get(record.key.as_str()).map_or("", String::as_str), &record);
+                done.insert(record.key.clone(), *record);
+            }
+        }
+        Ok(())
+    };
+    run_all(missing, setting, &cancelled, tell).map_err(|Stop(message)| Failure::input(message))
+}
+
+/// Why runs cannot go on.
+struct Stop(String);
+
+impl From<io::Error> for Stop {
+    fn from(error: io::Error) -> Stop {
+        Stop(format!("cannot go on: {error}"))
+    }
+}
+
+impl From<LogError> for Stop {
+    fn from(error: LogError) -> Stop {
+        Stop(error.to_string())
+    }
+}
+
+/// Those of the records that are about one of the runs, the last about each.
+fn by_key(records: Vec<Record>, runs: &[Run]) -> BTreeMap<String, Record> {
+    let wanted: BTreeSet<&str> = runs.iter().map(|run| run.key.as_str()).collect();
+    let records = records.into_iter().filter(|record| wanted.contains(record.key.as_str()));
+    records.map(|record| (record.key.clone(), record)).collect()
+}
+
+/// Reports what is in the log, without any run: the last of each where it was done again after a change.
+fn again(folder: &Path, out: &mut Output) -> Outcome {
+    let path = folder.join(LOG);
+    if !path.is_file() {
+        return Err(Failure::input(format_args!(
+            "name files to run; there is no {} to report",
+            path.display()
+        )));
+    }
+    let (_log, Past { records, notes }) = Log::open(&path).map_err(Failure::input)?;
+    notes.iter().for_each(|note| out.remark(format_args!("note: {note}")));
+    let mut last = BTreeMap::new();
+    for (index, record) in records.iter().enumerate() {
+        last.insert(place(record), index);
+    }
+    let mut indices: Vec<usize> = last.into_values().collect();
+    indices.sort_unstable();
+    let records: Vec<Record> = indices.into_iter().map(|index| records[index].clone()).collect();
+    report(&records, folder, out)
+}
+
+/// What a record is about, whatever version of it.
+fn place(record: &Record) -> impl Ord + use<> {
+    let Record { instance, states, quantifiers, set, solver, options, seed, repetition, .. } = record.clone();
+    ((instance, set, solver), (states, quantifiers, options), (seed, repetition))
+}
+
+/// Prints what is wrong and the scores, and writes all reports.
+fn report(records: &[Record], folder: &Path, out: &mut Output) -> Outcome {
+    let summary = summary(records);
+    out.line(summary.trim_end())?;
+    write_all(records, folder).map_err(|error| {
+        Failure::input(format_args!("cannot write the reports in {}: {error}", folder.display()))
+    })?;
+    out.remark(format_args!("note: the whole report is {}", folder.join("report.html").display()));
+    Ok(Status::from_code(judge(records).exit_code()))
+}
+
+/// Writes the same comparison for BenchExec, and runs nothing.
+fn benchexec(folder: &Path, instances: &[Arc<Instance>], solvers: &[Arc<Candidate>], ways: &Ways) -> Outcome {
+    let problems: Vec<Problem> = instances
+        .iter()
+        .filter_map(|instance| match &instance.kind {
+            Kind::Query(_) => None,
+            Kind::Problem { objective } => Some(Problem {
+                file: instance.file.clone().into(),
+                objective: Some(objective.clone()),
+                set: instance.set.clone(),
+                expected: None,
+            }),
+        })
+        .collect();
+    let option = |name: &str, value: &str| (name.to_owned(), value.to_owned());
+    let mut configurations = Vec::new();
+    for solver in solvers {
+        for (quantifiers, states) in
+            ways.quantifiers.iter().flat_map(|q| ways.states.iter().map(move |s| (q.as_str(), s.as_str())))
+        {
+            for seed in &ways.seeds {
+                let name = format!("{}-{quantifiers}-{states}", solver.name);
+                configurations.push(Configuration {
+                    name: if ways.seeds.len() > 1 { format!("{name}-{seed}") } else { name },
+                    options: vec![
+                        option("--solver", &solver.name),
+                        option("--quantifiers", quantifiers),
+                        option("--states", states),
+                        option("--seed", &seed.to_string()),
+                    ],
+                });
+            }
+        }
+    }
+    hyperplan_compare::benchexec::write(folder, &problems, &configurations, &ways.limit)
+        .map_err(|error| Failure::input(format_args!("cannot write {}: {error}", folder.display())))?;
+    Ok(Status::Good)
+}
+
+/// Does the job on standard input, for [`run`].
+pub(crate) fn supervise() -> Outcome {
+    hyperplan_compare::supervise().map_err(Failure::input)?;
+    Ok(Status::Good)
+}
+
+/// What was typed, checked.
+fn ways(args: &args::Compare) -> Outcome<Ways> {
+    for (option, seconds) in [("--timeout", Some(args.timeout)), ("--cpu", args.cpu)] {
+        if let Some(seconds) = seconds.filter(|seconds| !(seconds.is_finite() && *seconds > 0.0)) {
+            return Err(Failure::input(format_args!("{option} {seconds} is not a time to work in")));
+        }
+    }
+    if args.memory == Some(0) {
+        return Err(Failure::input("--memory 0 leaves no memory to the solver"));
+    }
+    Ok(Ways {
+        quantifiers: names(&args.quantifiers),
+        states: names(&args.states),
+        seeds: unique(args.seed.iter().copied()),
+        repetitions: args.repeat,
+        limit: Limit { wall_s: Some(args.timeout), cpu_s: args.cpu, memory_mib: args.memory },
+        options: args.no_verify.then(|| "--no-verify".to_owned()).into_iter().collect(),
+    })
+}
+
+fn names(values: &[impl ValueEnum]) -> Vec<String> {
+    unique(values.iter().filter_map(|value| Some(value.to_possible_value()?.get_name().to_owned())))
+}
+
+fn unique<T: Clone + Ord>(values: impl Iterator<Item = T>) -> Vec<T> {
+    let mut seen = BTreeSet::new();
+    values.filter(|value| seen.insert(value.clone())).collect()
+}
+
+/// The solvers that are meant, each once: all of them have to be there.
+fn candidates(solvers: Option<&str>) -> Outcome<Vec<Arc<Candidate>>> {
+    let catalog = configuration::catalog()?;
+    let specs = match solvers {
+        None => catalog.installed(),
+        Some(text) => catalog.specs(text).map_err(Failure::input)?,
+    };
+    let mut candidates: Vec<Arc<Candidate>> = Vec::new();
+    for spec in specs {
+        let name = spec.name().to_owned();
+        if candidates.iter().any(|candidate| candidate.name == name) {
+            continue;
+        }
+        let standalone = catalog.standalone(&spec).map_err(|error| Failure {
+            status: if matches!(error, Error::Missing { .. }) { Status::Solver } else { Status::Input },
+            message: error.to_string(),
+        })?;
+        let version = match &standalone {
+            Some(standalone) => standalone.version.clone(),
+            None => Some(open(&spec, &Options::default()).map_err(Failure::input)?.identity().version),
+        };
+        let program = standalone.as_ref().filter(|_| version.is_none()).map(|standalone| &standalone.program);
+        let stamp = program.map_or_else(String::new, |program| stamp(program));
+        candidates.push(Arc::new(Candidate { name, version, stamp, standalone }));
+    }
+    Ok(candidates)
+}
+
+/// The length of a program and when it was written.
+fn stamp(program: &Path) -> String {
+    let data = program.metadata();
+    data.map_or_else(|_| String::new(), |data| format!("{} {:?}", data.len(), data.modified().ok()))
+}

@@ -1,0 +1,89 @@
+//! How far a comparison is: a bar on a terminal, a line for each run elsewhere.
+
+use crate::output::Output;
+use hyperplan_compare::{Record, Status};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::{self, IsTerminal as _};
+use std::time::{Duration, Instant};
+
+/// Tells what was done and what is left.
+pub(crate) struct Progress<'a> {
+    out: &'a Output,
+    bar: Option<ProgressBar>,
+    start: Instant,
+    done: usize,
+    all: usize,
+}
+
+impl<'a> Progress<'a> {
+    pub(crate) fn new(all: usize, quiet: bool, out: &'a Output) -> Self {
+        let bar = (io::stderr().is_terminal() && !quiet && all > 0).then(|| {
+            let bar = ProgressBar::new(all as u64);
+            let template = "{bar:30} {pos}/{len}, {elapsed} so far, {eta} left  {wide_msg}";
+            bar.set_style(
+                ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()),
+            );
+            bar.enable_steady_tick(Duration::from_millis(500));
+            bar
+        });
+        Progress { out, bar, start: Instant::now(), done: 0, all }
+    }
+
+    /// A run has begun.
+    pub(crate) fn started(&self, label: &str) {
+        if let Some(bar) = &self.bar {
+            bar.set_message(label.to_owned());
+        }
+    }
+
+    /// A run has ended.
+    pub(crate) fn finished(&mut self, label: &str, record: &Record) {
+        self.done += 1;
+        let mut line = format!("{label}: {} {:.2} s", word(record.status), record.wall_s);
+        if let (Status::Error, Some(message)) = (record.status, &record.message) {
+            line.push_str(&format!(" ({message})"));
+        }
+        match &self.bar {
+            None => self.out.remark(format_args!("[{}/{}] {line}{}", self.done, self.all, self.left())),
+            Some(bar) => {
+                // What went wrong stays to be read.
+                if record.status == Status::Error {
+                    bar.println(line);
+                }
+                bar.inc(1);
+            }
+        }
+    }
+
+    /// An estimate, once it is worth something.
+    fn left(&self) -> String {
+        let each = self.start.elapsed().as_secs_f64() / self.done.max(1) as f64;
+        let seconds = each * self.all.saturating_sub(self.done) as f64;
+        match seconds {
+            s if s >= 3600.0 => format!(", about {:.1} h left", s / 3600.0),
+            s if s >= 60.0 => format!(", about {:.0} min left", s / 60.0),
+            s if s >= 1.0 => format!(", about {s:.0} s left"),
+            _ => String::new(),
+        }
+    }
+}
+
+impl Drop for Progress<'_> {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+fn word(status: Status) -> &'static str {
+    match status {
+        Status::Sat => "sat",
+        Status::Unsat => "unsat",
+        Status::Unknown => "unknown",
+        Status::Timeout => "timeout",
+        Status::Memout => "out of memory",
+        Status::Error => "error",
+        Status::Unsupported => "unsupported",
+    }
+}

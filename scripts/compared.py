@@ -1,0 +1,55 @@
+"""What the scripts around `hyperplan compare` share."""
+
+import argparse
+import json
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SOLVED = ("sat", "unsat")
+
+
+def parser(description: str | None, out: str, timeout: int) -> argparse.ArgumentParser:
+    """The options of all scripts. Others go to `hyperplan compare` as they are: `--jobs 2 --memory 4096`."""
+    built = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"), "release", "hyperplan")
+    wanted = argparse.ArgumentParser(
+        description=description, formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False,
+        epilog="All other options are those of hyperplan compare: --solver z3,cvc5 --jobs 2 --repeat 3 ...",
+    )
+    add = wanted.add_argument
+    add("--hyperplan", default=str(built), metavar="PROGRAM", help="the program [%(default)s]")
+    add("--out", type=pathlib.Path, default=pathlib.Path(out), metavar="DIR", help="log and reports [%(default)s]")
+    add("--timeout", type=float, default=timeout, metavar="SECONDS", help="of each run [%(default)s]")
+    return wanted
+
+
+def compare(arguments: argparse.Namespace, *options: str) -> tuple[list[dict], int]:
+    """Compares, or goes on where it was interrupted. The records, and the exit status: 4 and 5 say that answers are wrong."""
+    # From the root, so that problems have the same names wherever this is started.
+    program = arguments.hyperplan
+    command = [str(pathlib.Path(program).resolve()) if os.sep in program else program, "compare", *options]
+    command += ["--timeout", f"{arguments.timeout:g}", "--out", str(arguments.out.resolve())]
+    # The tables are on standard output, where the script's own is to come.
+    status = subprocess.run(command, stdout=sys.stderr, cwd=ROOT, check=False).returncode
+    runs = arguments.out / "runs.json"
+    if status not in (0, 4, 5) or not runs.is_file():
+        sys.exit(status or 1)
+    return json.loads(runs.read_text()), status
+
+
+def result(records: list[dict]) -> str:
+    """The median time of some runs, or what happened to them, as in the tables of hyperplan."""
+    solved = sorted(record["wall_s"] for record in records if record["status"] in SOLVED)
+    if len(solved) * 2 <= len(records):
+        return next((record["status"] for record in records if record["status"] not in SOLVED), "")
+    return f"{statistics.median_high(solved):.3f}"
+
+
+def table(head: list[str], rows: list[list[str]]) -> None:
+    """Prints Markdown: the first column to the left, the others to the right."""
+    rule = ["---"] + ["---:"] * (len(head) - 1)
+    for row in [head, rule, *rows]:
+        print(f"| {' | '.join(row)} |")

@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+"""Compares all solvers on all problems, in a folder named after the day, and says what has become worse since the last.
+
+Ends with 1 if something has: an answer changed or got lost, or takes twice as long and a second more. An interrupted
+night goes on where it stopped if started again on the same day.
+"""
+
+import datetime
+import json
+import os
+import sys
+
+import compared
+
+PROBLEMS = ["specs/rooms.hp", "specs/case-studies", "specs/pass"]
+WAY = ("solver", "quantifiers", "states", "options")
+
+
+def main() -> None:
+    parser = compared.parser(__doc__, "nightly", 20)
+    parser.add_argument("--problems", nargs="+", metavar="FILE|FOLDER", help="instead of those in specs/")
+    parser.add_argument("--day", default=datetime.date.today().isoformat(), help="the folder's name [today]")
+    arguments, others = parser.parse_known_args()
+    named = arguments.problems and [os.path.relpath(problem, compared.ROOT) for problem in arguments.problems]
+    nights = arguments.out
+    before = sorted(path.parent for path in nights.glob("*/runs.json") if path.parent.name < arguments.day)
+    arguments.out = nights / arguments.day
+    records, status = compared.compare(arguments, *(named or PROBLEMS), *others)
+    if not before:
+        print("nothing to compare with")
+        sys.exit(status)
+    last = before[-1]
+    worse = list(regressions(grouped(json.loads((last / "runs.json").read_text())), grouped(records)))
+    print(f"{len(worse)} runs are worse than on {last.name}")
+    for line in worse:
+        print(f"  {line}")
+    sys.exit(status or (1 if worse else 0))
+
+
+def grouped(records: list[dict]) -> dict[str, list[dict]]:
+    """The repetitions of each run."""
+    groups: dict[str, list[dict]] = {}
+    for record in records:
+        parts = [record["instance"], *record["set"], *(record[key] for key in WAY), record["seed"] and f"seed {record['seed']}"]
+        groups.setdefault(" ".join(part for part in parts if part), []).append(record)
+    return groups
+
+
+def regressions(old: dict[str, list[dict]], new: dict[str, list[dict]]):
+    """What is worse; what is new or gone is not."""
+    for key, records in new.items():
+        before, now = (sorted({r["status"] for r in runs}) for runs in (old.get(key, []), records))
+        times = [min((r["wall_s"] for r in runs), default=0.0) for runs in (old.get(key, []), records)]
+        if not set(before) & set(compared.SOLVED):
+            continue
+        if now != before:
+            yield f"{key}: {', '.join(before)}, now {', '.join(now)}"
+        elif times[1] > 2 * times[0] and times[1] > times[0] + 1:
+            yield f"{key}: {times[0]:.3f} s, now {times[1]:.3f} s"
+
+
+if __name__ == "__main__":
+    main()
