@@ -6,6 +6,7 @@ use crate::failure::{Failure, Outcome};
 use crate::output::check_writable;
 use crate::report::Picture;
 use crate::signals;
+use chrono::{DateTime, NaiveDate, Utc};
 use hyperplan_plan::{Config, Quantifiers, States};
 use hyperplan_solver::{Deadline, Spec};
 use std::path::PathBuf;
@@ -86,6 +87,23 @@ pub(crate) fn states(typed: args::States) -> States {
         args::States::Enum => States::Enum,
         args::States::Real => States::Real,
     }
+}
+
+/// A date as headers have it: the one that was given, that of `SOURCE_DATE_EPOCH`, or today's.
+pub(crate) fn date(given: Option<&str>) -> Outcome<String> {
+    let format = "%Y-%m-%d";
+    let date = match (given, std::env::var("SOURCE_DATE_EPOCH")) {
+        (Some(text), _) => NaiveDate::parse_from_str(text, format)
+            .map_err(|_| Failure::input(format_args!("--date {text} is no date; write it as 2026-01-31")))?,
+        (None, Ok(seconds)) => {
+            let date = seconds.trim().parse().ok().and_then(|seconds| DateTime::from_timestamp(seconds, 0));
+            let wrong =
+                || Failure::input(format_args!("SOURCE_DATE_EPOCH={seconds} is no number of seconds"));
+            date.ok_or_else(wrong)?.date_naive()
+        }
+        (None, Err(_)) => Utc::now().date_naive(),
+    };
+    Ok(date.format(format).to_string())
 }
 
 /// The end of the whole command, by time or by signal.

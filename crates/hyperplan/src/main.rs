@@ -10,6 +10,7 @@ mod load;
 mod output;
 mod report;
 mod signals;
+mod store;
 
 use clap::Parser as _;
 use failure::{Outcome, Status};
@@ -18,7 +19,7 @@ use std::process::ExitCode;
 
 /// Expressions nest some thousand levels deep, and everything that walks them recurses: more than the main thread
 /// has on some systems.
-const STACK: usize = 256 << 20;
+pub(crate) const STACK: usize = 256 << 20;
 
 fn main() -> ExitCode {
     let cli = match args::Cli::try_parse() {

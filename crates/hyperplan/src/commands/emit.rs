@@ -1,5 +1,6 @@
 //! `hyperplan emit`: queries as SMT-LIB 2.
 
+use super::emit_family;
 use crate::args;
 use crate::config;
 use crate::failure::{Failure, Outcome, Status};
@@ -11,13 +12,15 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 pub(crate) fn run(args: &args::Emit, out: &mut Output) -> Outcome {
+    let Some(file) = &args.file else { return emit_family::run(args, out) };
     let config = EmitConfig {
         solver: args.solver.as_deref().map(config::solver).transpose()?,
         quantifiers: config::quantifiers(args.encoding.quantifiers),
         states: config::states(args.encoding.states),
         deadline: config::deadline(args.encoding.timeout)?,
     };
-    let loaded = Loaded::read(&args.problem, out)?;
+    let problem = args::Problem { file: file.clone(), set: args.set.clone() };
+    let loaded = Loaded::read(&problem, out)?;
     let objectives = loaded.selected(args.selection.objective.as_deref(), false)?;
     let target = Target::new(args.output.as_deref(), objectives.len())?;
     for objective in objectives {

@@ -2,6 +2,7 @@
 
 mod check;
 mod emit;
+mod emit_family;
 mod horizon;
 mod plot;
 mod solve;
