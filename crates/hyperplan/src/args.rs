@@ -218,33 +218,33 @@ pub(crate) struct Family {
     #[arg(long = "family", value_name = "DIR", conflicts_with_all = ["file", "set", "objective", "output"])]
     pub(crate) folder: Option<PathBuf>,
     /// Cells along a side of the maps
-    #[arg(long, value_name = "N,...", value_delimiter = ',', default_values_t = [4, 6], requires = "folder")]
+    #[arg(long, value_name = "N,...", value_delimiter = ',', default_values_t = [4, 6], conflicts_with = "file")]
     pub(crate) sizes: Vec<u32>,
     /// Obstacles, in percent of the cells
-    #[arg(long, value_name = "N,...", value_delimiter = ',', default_values_t = [10, 20], requires = "folder")]
+    #[arg(long, value_name = "N,...", value_delimiter = ',', default_values_t = [10, 20], conflicts_with = "file")]
     pub(crate) densities: Vec<u32>,
     /// Seeds of the maps: numbers and ranges, both ends included
-    #[arg(long, value_name = "N|LO..HI,...", value_parser = seeds, default_value = "0..1", requires = "folder")]
+    #[arg(long, value_name = "N|LO..HI,...", value_parser = seeds, default_value = "0..1", conflicts_with = "file")]
     pub(crate) seeds: Seeds,
     /// Objectives: sp, isr, ar, iso, cso
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_values_t = family::Objective::ALL,
-        requires = "folder")]
+        conflicts_with = "file")]
     pub(crate) objectives: Vec<family::Objective>,
     /// Horizons, by the least that is enough: below, least, above (by one), double
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_values_t = family::Horizon::ALL,
-        requires = "folder")]
+        conflicts_with = "file")]
     pub(crate) horizons: Vec<family::Horizon>,
     /// The name of the family
-    #[arg(long, value_name = "NAME", default_value = "random-maps", requires = "folder")]
+    #[arg(long, value_name = "NAME", default_value = "random-maps", conflicts_with = "file")]
     pub(crate) name: String,
     /// Who submits it
-    #[arg(long, value_name = "NAME", default_value = "hyperplan", requires = "folder")]
+    #[arg(long, value_name = "NAME", default_value = "hyperplan", conflicts_with = "file")]
     pub(crate) submitter: String,
     /// Seconds to search for each least horizon and each status
-    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, requires = "folder")]
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, conflicts_with = "file")]
     pub(crate) limit: f64,
     /// How many instances are worked on at a time [default: one a core]
-    #[arg(long, value_name = "N", requires = "folder")]
+    #[arg(long, value_name = "N", conflicts_with = "file")]
     pub(crate) jobs: Option<std::num::NonZeroUsize>,
 }
 
