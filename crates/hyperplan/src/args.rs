@@ -1,6 +1,7 @@
 //! What may be typed. What is meant by it is decided in [`crate::config`].
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use hyperplan_family as family;
 use std::path::PathBuf;
 
 /// Plans robot motion from objectives that relate several paths at once.
@@ -213,15 +214,21 @@ pub(crate) enum Status {
 
 #[derive(Debug, Args)]
 pub(crate) struct Emit {
+    /// The problem file (.hp)
+    #[arg(value_name = "FILE", required_unless_present = "folder")]
+    pub(crate) file: Option<PathBuf>,
+    /// Replaces the value of a constant
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
+    pub(crate) set: Vec<(String, String)>,
     #[command(flatten)]
-    pub(crate) problem: Problem,
+    pub(crate) family: Family,
     #[command(flatten)]
     pub(crate) selection: Selection,
     /// How quantifiers are written; several, separated by commas, are a file each
-    #[arg(long, value_enum, value_name = "HOW", value_delimiter = ',', default_value = "auto")]
+    #[arg(long, value_enum, value_name = "HOW,...", value_delimiter = ',', default_value = "auto")]
     pub(crate) quantifiers: Vec<Quantifiers>,
     /// How states are represented; several are a file each
-    #[arg(long, value_enum, value_name = "HOW", value_delimiter = ',', default_value = "auto")]
+    #[arg(long, value_enum, value_name = "HOW,...", value_delimiter = ',', default_value = "auto")]
     pub(crate) states: Vec<States>,
     /// A file for each value of a constant, such as T
     #[arg(long, value_name = "CONST=LO..HI", value_parser = range)]
@@ -254,6 +261,49 @@ pub(crate) struct Emit {
     #[arg(long, value_name = "SECONDS")]
     pub(crate) timeout: Option<f64>,
 }
+
+/// A family of benchmarks on random maps.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Families")]
+pub(crate) struct Family {
+    /// Writes a family of benchmarks on random maps into a directory, in the layout of SMT-LIB submissions; goes on
+    /// where an earlier run stopped, and adds to what is there
+    #[arg(long = "family", value_name = "DIR", conflicts_with_all = ["file", "set", "objective", "output", "each", "status"])]
+    pub(crate) folder: Option<PathBuf>,
+    /// Cells along a side of the maps
+    #[arg(long, value_name = "N,...", value_delimiter = ',', default_values_t = [4, 6], conflicts_with = "file")]
+    pub(crate) sizes: Vec<u32>,
+    /// Obstacles, in percent of the cells
+    #[arg(long, value_name = "N,...", value_delimiter = ',', default_values_t = [10, 20], conflicts_with = "file")]
+    pub(crate) densities: Vec<u32>,
+    /// Seeds of the maps: numbers and ranges, both ends included
+    #[arg(long, value_name = "N|LO..HI,...", value_parser = seeds, default_value = "0..1", conflicts_with = "file")]
+    pub(crate) seeds: Seeds,
+    /// Objectives: sp, isr, ar, iso, cso
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_values_t = family::Objective::ALL,
+        conflicts_with = "file")]
+    pub(crate) objectives: Vec<family::Objective>,
+    /// Horizons, by the least that is enough: below, least, above (by one), double
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_values_t = family::Horizon::ALL,
+        conflicts_with = "file")]
+    pub(crate) horizons: Vec<family::Horizon>,
+    /// The name of the family
+    #[arg(long, value_name = "NAME", default_value = "random-maps", conflicts_with = "file")]
+    pub(crate) name: String,
+    /// Who submits it
+    #[arg(long, value_name = "NAME", default_value = "hyperplan", conflicts_with = "file")]
+    pub(crate) submitter: String,
+    /// Seconds to search for each least horizon and each status
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, conflicts_with = "file")]
+    pub(crate) limit: f64,
+    /// How many instances are worked on at a time [default: one a core]
+    #[arg(long, value_name = "N", conflicts_with = "file")]
+    pub(crate) jobs: Option<std::num::NonZeroUsize>,
+}
+
+/// Seeds, in the order in which they were named.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Seeds(pub(crate) Vec<u64>);
 
 #[derive(Debug, Args)]
 pub(crate) struct Horizon {
@@ -450,4 +500,24 @@ fn minimize(text: &str) -> Result<Minimize, String> {
         Some((lo, hi)) if lo > hi => Err(format!("the range {lo}..{hi} is empty")),
         range => Ok(Minimize { constant, range }),
     }
+}
+
+/// More maps than this in one range are hardly meant.
+const MOST_SEEDS: u64 = 100_000;
+
+fn seeds(text: &str) -> Result<Seeds, String> {
+    let mut seeds = Vec::new();
+    for part in text.split(',') {
+        let number = |text: &str| text.trim().parse::<u64>().ok();
+        let (lo, hi) = part.split_once("..").unwrap_or((part, part));
+        match number(lo).zip(number(hi)) {
+            Some((lo, hi)) if hi < lo => return Err(format!("the range {part} is empty")),
+            Some((lo, hi)) if hi - lo >= MOST_SEEDS => {
+                return Err(format!("the range {part} has more than {MOST_SEEDS} seeds"));
+            }
+            Some((lo, hi)) => seeds.extend(lo..=hi),
+            None => return Err("expected numbers or ranges of them, such as 3 or 0..9".to_owned()),
+        }
+    }
+    Ok(Seeds(seeds))
 }

@@ -12,6 +12,7 @@ mod output;
 mod progress;
 mod report;
 mod signals;
+mod store;
 
 use clap::Parser as _;
 use failure::{Outcome, Status};
@@ -20,7 +21,7 @@ use std::process::ExitCode;
 
 /// Expressions nest some thousand levels deep, and everything that walks them recurses: more than the main thread
 /// has on some systems.
-const STACK: usize = 256 << 20;
+pub(crate) const STACK: usize = 256 << 20;
 
 fn main() -> ExitCode {
     let cli = match args::Cli::try_parse() {

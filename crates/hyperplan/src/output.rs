@@ -26,6 +26,11 @@ impl Output {
         Output { stdout: io::BufWriter::new(io::stdout()), closed: false, quiet, color, color_errors }
     }
 
+    /// Whether nothing but results is wanted.
+    pub(crate) fn is_quiet(&self) -> bool {
+        self.quiet
+    }
+
     /// Whether the reader of standard output has gone.
     pub(crate) fn is_closed(&self) -> bool {
         self.closed

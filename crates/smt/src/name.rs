@@ -56,15 +56,18 @@ impl Mangled {
 
     /// Writes it as a name that has no time: of a sort or a constructor.
     pub(crate) fn write(&self, w: &mut impl io::Write) -> io::Result<()> {
-        let (quote, mark) = (if self.quoted { "|" } else { "" }, if self.word { "@" } else { "" });
-        write!(w, "{quote}{}{mark}{quote}", self.text)
+        let quote = if self.quoted { "|" } else { "" };
+        write!(w, "{quote}{}{quote}", self.timeless())
+    }
+
+    /// The text where there is no time.
+    fn timeless(&self) -> &str {
+        if self.word { &self.text } else { &self.text[..self.text.len() - 1] }
     }
 
     /// Whether the text is the name as [`Mangled::write`] has it, with or without quotes.
     pub(crate) fn is_written(&self, text: &str) -> bool {
-        let inner = text.strip_prefix('|').and_then(|text| text.strip_suffix('|')).unwrap_or(text);
-        let inner = if self.word { inner.strip_suffix('@') } else { Some(inner) };
-        inner == Some(&*self.text)
+        text.strip_prefix('|').and_then(|text| text.strip_suffix('|')).unwrap_or(text) == self.timeless()
     }
 }
 
@@ -157,14 +160,12 @@ impl<'a> SymbolName<'a> {
         if self.terms.op(self.symbol) == Op::Bound {
             w.write_all(b"?")?;
         }
-        let text = name.text.as_bytes();
         match time {
             Some(time) => {
-                w.write_all(text)?;
+                w.write_all(name.text.as_bytes())?;
                 write_number(w, time.into())?;
             }
-            None if name.word => w.write_all(text)?,
-            None => w.write_all(&text[..text.len() - 1])?,
+            None => w.write_all(name.timeless().as_bytes())?,
         }
         if name.quoted {
             w.write_all(b"|")?;

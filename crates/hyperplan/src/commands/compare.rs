@@ -1,7 +1,6 @@
 //! `hyperplan compare`: solvers and encodings over problems.
 
 use crate::args;
-use crate::config;
 use crate::configuration;
 use crate::failure::{Failure, Outcome, Status};
 use crate::instances::instances;

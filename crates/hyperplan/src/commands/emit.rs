@@ -1,11 +1,12 @@
 //! `hyperplan emit`: benchmarks in SMT-LIB 2.
 
+use super::emit_family;
 use crate::args;
 use crate::config;
 use crate::failure::{Failure, Outcome, Status};
-use crate::load::{Loaded, read_source};
+use crate::load::{Consts, Loaded, read_source};
 use crate::output::{Output, cannot_write, check_writable};
-use hyperplan_plan::{EmitConfig, Emitted, Limits, emit};
+use hyperplan_plan::{EmitConfig, Emitted, Limits, Quantifiers, States, emit};
 use hyperplan_problem::{Type, display};
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -16,52 +17,25 @@ use std::time::Instant;
 const MOST_VALUES: i64 = 100_000;
 
 pub(crate) fn run(args: &args::Emit, out: &mut Output) -> Outcome {
-    let common = EmitConfig {
-        solver: args.solver.as_deref().map(config::solver).transpose()?,
-        track: config::track(args.track),
-        status: config::status(args.status),
-        comments: !args.no_comments,
-        limits: Limits { prune: !args.no_pruning, ..Limits::default() },
-        deadline: config::deadline(args.timeout)?,
-        ..EmitConfig::new(config::date(args.date.as_deref())?)
-    };
-    let common = match &args.author {
-        Some(author) => EmitConfig { author: config::author(author)?, ..common },
-        None => common,
-    };
-    let text = read_source(&args.problem.file)?;
+    let Some(file) = &args.file else { return emit_family::run(args, out) };
+    let common = common(args, &config::date(args.date.as_deref())?)?;
+    let text = read_source(file)?;
     let mut target = None;
     for setting in settings(args)? {
-        let mut problem = args.problem.clone();
-        problem.set.extend(setting.clone());
+        let mut set = args.set.clone();
+        set.extend(setting.clone());
+        let problem = args::Problem { file: file.clone(), set };
         let (loaded, consts) = Loaded::with_consts(&problem, &text, Instant::now(), out)?;
         let objectives = loaded.selected(args.selection.objective.as_deref(), false)?;
-        let several = objectives.len() > 1 || setting.is_some();
-        let encodings: Vec<_> = args
-            .quantifiers
-            .iter()
-            .flat_map(|&quantifiers| args.states.iter().map(move |&states| (quantifiers, states)))
-            .collect();
+        let several = objectives.len() > 1 || setting.is_some() || encodings(args).count() > 1;
         let target = match &target {
             Some(target) => target,
-            None => target.insert(Target::new(args.output.as_deref(), several || encodings.len() > 1)?),
+            None => target.insert(Target::new(args.output.as_deref(), several)?),
         };
-        let constants: Vec<String> = consts
-            .iter()
-            .map(|(name, value)| format!("{name} = {}", display::value(&Type::Int, *value)))
-            .collect();
+        let common = EmitConfig { remarks: remarks(&loaded, &consts), ..common.clone() };
         for objective in objectives {
-            for &(quantifiers, states) in &encodings {
-                let mut remarks = vec![format!("Problem: {}", loaded.file)];
-                if !constants.is_empty() {
-                    remarks.push(format!("Constants: {}.", constants.join(", ")));
-                }
-                let config = EmitConfig {
-                    quantifiers: config::quantifiers(quantifiers),
-                    states: config::states(states),
-                    remarks,
-                    ..common.clone()
-                };
+            for (quantifiers, states) in encodings(args) {
+                let config = EmitConfig { quantifiers, states, ..common.clone() };
                 let mut emitted = emit(&loaded.problem, objective, &config).map_err(|e| Failure {
                     status: Status::from_code(e.exit_code()),
                     message: format!("{}: {e}", objective.name),
@@ -73,6 +47,43 @@ pub(crate) fn run(args: &args::Emit, out: &mut Output) -> Outcome {
         }
     }
     Ok(Status::Good)
+}
+
+/// What all benchmarks of a command have in common.
+pub(super) fn common(args: &args::Emit, date: &str) -> Outcome<EmitConfig> {
+    let config = EmitConfig {
+        solver: args.solver.as_deref().map(config::solver).transpose()?,
+        track: config::track(args.track),
+        status: config::status(args.status),
+        comments: !args.no_comments,
+        limits: Limits { prune: !args.no_pruning, ..Limits::default() },
+        deadline: config::deadline(args.timeout)?,
+        ..EmitConfig::new(date)
+    };
+    Ok(match &args.author {
+        Some(author) => EmitConfig { author: config::author(author)?, ..config },
+        None => config,
+    })
+}
+
+/// The ways of writing that were asked for.
+fn encodings(args: &args::Emit) -> impl Iterator<Item = (Quantifiers, States)> {
+    args.quantifiers.iter().flat_map(|&quantifiers| {
+        args.states.iter().map(move |&states| (config::quantifiers(quantifiers), config::states(states)))
+    })
+}
+
+/// What the header says of the problem file.
+fn remarks(loaded: &Loaded, consts: &Consts) -> Vec<String> {
+    let values: Vec<String> = consts
+        .iter()
+        .map(|(name, value)| format!("{name} = {}", display::value(&Type::Int, *value)))
+        .collect();
+    let mut remarks = vec![format!("Problem: {}", loaded.file)];
+    if !values.is_empty() {
+        remarks.push(format!("Constants: {}.", values.join(", ")));
+    }
+    remarks
 }
 
 /// A constant's name and value, as typed.

@@ -3,6 +3,7 @@
 mod check;
 mod compare;
 mod emit;
+mod emit_family;
 mod horizon;
 mod plot;
 mod solve;

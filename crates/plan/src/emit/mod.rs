@@ -16,7 +16,7 @@ use hyperplan_encode::{Encoder, Goal, Limits, Narrowing};
 use hyperplan_problem::{Mode, Objective, PathId, Problem, Quantifier};
 use hyperplan_smt::{Ask, Features, Header, Script, WriteOptions, write_header, write_script};
 use hyperplan_solver::{Deadline, Spec};
-use std::io::{self, Seek as _};
+use std::io;
 pub(crate) use tape::Tape;
 
 pub use hyperplan_smt::Status;
@@ -118,8 +118,7 @@ impl Emitted {
             Body::Query(script) => write_script(&mut to, script, &self.options),
             Body::Dialogue(tape) => {
                 write_header(&mut to, &self.options, &self.logic)?;
-                tape.text.rewind()?;
-                io::copy(&mut tape.text, &mut to)?;
+                tape.copy(to)?;
                 to.write_all(b"(exit)\n")
             }
         }
@@ -227,7 +226,11 @@ fn build(encoder: &Encoder<'_>, config: &EmitConfig, dialect: &Dialect) -> Resul
         license: Some("https://creativecommons.org/licenses/by/4.0/".into()),
         category: Some("crafted".into()),
         // A dialogue says it of each check.
-        status: matches!(body, Body::Query(_)).then_some(status),
+        status: match &body {
+            Body::Dialogue(tape) if tape.checks > 1 => None,
+            Body::Dialogue(tape) => tape.first,
+            Body::Query(_) => Some(status),
+        },
     };
     let options = WriteOptions {
         header,
@@ -343,6 +346,9 @@ fn dialogue(
         return Err(Error::Unsupported(
             "nothing was asked before the search ended: give it more time".into(),
         ));
+    }
+    if tape.checks == 1 {
+        notes.push("the search asks only once, which makes no incremental benchmark".into());
     }
     Ok((tape.finished()?, status))
 }

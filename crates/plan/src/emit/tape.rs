@@ -5,8 +5,8 @@
 //! those that it was given. Every check has its answer for `:status`.
 
 use crate::config::Error;
-use hyperplan_smt::{Features, Printer, Script, write_comment};
-use std::io::{self, Write};
+use hyperplan_smt::{Features, Printer, Script, Status, write_comment};
+use std::io::{self, BufRead as _, BufReader, Seek as _, Write};
 use tempfile::SpooledTempFile;
 
 /// How many bytes stay in memory.
@@ -14,13 +14,15 @@ const IN_MEMORY: usize = 1 << 24;
 
 /// The text so far, and what each open dialogue has said.
 pub(crate) struct Tape {
-    pub(super) text: SpooledTempFile,
+    text: SpooledTempFile,
     open: Vec<Scope>,
     /// How many dialogues there were.
     dialogues: u32,
     features: Features,
     comments: bool,
     pub(super) checks: usize,
+    /// The first answer.
+    pub(super) first: Option<Status>,
     pub(super) symbols: usize,
     pub(super) assertions: usize,
     /// The first failure; nothing is written after it.
@@ -41,6 +43,7 @@ impl Tape {
             features: Features::default(),
             comments,
             checks: 0,
+            first: None,
             symbols: 0,
             assertions: 0,
             failure: None,
@@ -56,7 +59,7 @@ impl Tape {
         if !self.open.is_empty() {
             self.keep(|tape| tape.text.write_all(b"(push 1)\n"));
         }
-        let printer = Printer::numbered(self.dialogues);
+        let printer = Printer::numbered(self.dialogues, self.open.last().map(|scope| &scope.printer));
         self.dialogues += 1;
         self.open.push(Scope { printer, fed: 0 });
     }
@@ -101,7 +104,9 @@ impl Tape {
         }
         scope.fed = script.len();
         self.checks += 1;
-        writeln!(text, "(set-info :status {})", if satisfiable { "sat" } else { "unsat" })?;
+        let status = if satisfiable { Status::Sat } else { Status::Unsat };
+        self.first.get_or_insert(status);
+        writeln!(text, "(set-info :status {})", status.text())?;
         text.extend_from_slice(b"(check-sat)\n");
         self.text.write_all(&text)
     }
@@ -110,6 +115,23 @@ impl Tape {
         if self.failure.is_none() {
             self.failure = write(self).err();
         }
+    }
+
+    /// Writes what was said. Of a single check the status is told by the header.
+    pub(super) fn copy(&mut self, to: &mut dyn Write) -> io::Result<()> {
+        self.text.rewind()?;
+        if self.checks > 1 {
+            return io::copy(&mut self.text, to).map(|_| ());
+        }
+        let mut line = Vec::new();
+        let mut text = BufReader::new(&mut self.text);
+        while text.read_until(b'\n', &mut line)? > 0 {
+            if !line.starts_with(b"(set-info :status ") {
+                to.write_all(&line)?;
+            }
+            line.clear();
+        }
+        Ok(())
     }
 
     /// The tape, unless something could not be kept.

@@ -55,10 +55,12 @@ impl Printer {
         Printer::default()
     }
 
-    /// A printer whose names for shared terms are its own: several with different numbers may print into one text.
+    /// A printer whose names for shared terms are its own: several with different numbers may print into one text. What
+    /// it prints stands within the scope of another's, perhaps, whose arena has the same enumerations.
     #[must_use]
-    pub fn numbered(series: u32) -> Self {
-        Printer { series, ..Printer::default() }
+    pub fn numbered(series: u32, within: Option<&Printer>) -> Self {
+        let datatypes = within.map_or_else(BTreeSet::new, |outer| outer.datatypes.clone());
+        Printer { series, datatypes, ..Printer::default() }
     }
 
     /// What occurs in everything scanned so far.

@@ -1,0 +1,22 @@
+//! Families of random planning problems: which maps and objectives there are, what the problems say, where their
+//! benchmarks go, and what is written down of them.
+//!
+//! A [`Family`] is sizes, densities, seeds, objectives and horizons. Each of its [`Case`]s is an objective on a random
+//! [`Map`]; with the least horizon of a case known, each [`Horizon`] gives an instance. [`Layout`] says where its
+//! benchmark goes, a [`Record`] what became of it, and [`Manifest`] lists all. Nothing here reads or writes a file, asks
+//! a solver, or depends on time or machine: the same parameters give the same text.
+
+mod family;
+mod layout;
+mod manifest;
+mod map;
+mod objective;
+mod random;
+mod record;
+
+pub use family::{Case, Family, Horizon};
+pub use layout::{Folder, Layout, NameError};
+pub use manifest::Manifest;
+pub use map::{Cell, MAX_DENSITY, Map, MapError, Parameters, SIZES};
+pub use objective::Objective;
+pub use record::{About, Dropped, Entry, Head, Log, LogError, Record, body_of, sha256};

@@ -1,0 +1,293 @@
+//! One objective on one map: its least horizon, and its benchmarks.
+
+use super::{Note, Work};
+use crate::failure::{self, Failure, Outcome};
+use crate::store::write_whole;
+use hyperplan_family::{
+    About, Case, Dropped, Entry, Folder, Horizon, Layout, Map, Objective, Record, body_of, sha256,
+};
+use hyperplan_plan::{
+    self as plan, Config, EmitConfig, MinimizeError, Status, Track, Verdict, emit, minimize, solve,
+};
+use hyperplan_problem::{NoFiles, Overrides, Problem, read};
+use hyperplan_solver::{Deadline, Spec};
+use hyperplan_syntax::SourceMap;
+use std::collections::BTreeSet;
+use std::io::{self, Write};
+use std::sync::mpsc::SyncSender;
+
+/// The most bytes that a benchmark may have.
+const MOST_BYTES: usize = 50_000_000;
+
+/// One case, and where to say what comes of it.
+pub(super) struct One<'a> {
+    pub(super) work: &'a Work<'a>,
+    pub(super) case: Case,
+    pub(super) deadline: &'a Deadline,
+    pub(super) notes: &'a SyncSender<Note>,
+    pub(super) done: &'a BTreeSet<String>,
+}
+
+/// How a benchmark is written.
+#[derive(Clone, Copy)]
+struct Encoding {
+    states: plan::States,
+    quantifiers: plan::Quantifiers,
+}
+
+impl One<'_> {
+    pub(super) fn run(&self, least: Option<Option<u32>>) -> Outcome<()> {
+        let name = self.case.to_string();
+        let map = match Map::random(self.case.map) {
+            Ok(map) => map,
+            Err(_) if self.done.contains(&name) => return Ok(()),
+            Err(reason) => return self.dropped(&name, &reason.to_string()),
+        };
+        let objective = self.case.objective;
+        let least = match least {
+            Some(least) => least,
+            None => match self.least(&map)? {
+                Found::Least(least) => {
+                    self.note(Record::Least { case: name, least });
+                    least
+                }
+                Found::Undecided(reason) => return self.dropped(&name, &reason),
+                Found::Interrupted => return Ok(()),
+            },
+        };
+        for (horizon, steps) in self.work.family.horizons(&map, objective, least) {
+            if !self.horizon(&map, horizon, steps)? {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn note(&self, record: Record) {
+        // The receiver is there until all workers have ended.
+        let _ = self.notes.send(Note::Record(Box::new(record)));
+    }
+
+    fn dropped(&self, instance: &str, reason: &str) -> Outcome<()> {
+        if !self.deadline.passed() {
+            let (instance, reason) = (instance.to_owned(), reason.to_owned());
+            self.note(Record::Dropped(Dropped { instance, reason }));
+        }
+        Ok(())
+    }
+
+    fn config(&self) -> Config {
+        Config { deadline: self.deadline.within(self.work.limit), ..Config::new(Spec::Builtin) }
+    }
+
+    /// Searches for the least horizon.
+    fn least(&self, map: &Map) -> Outcome<Found> {
+        let objective = self.case.objective;
+        let most = objective.most_steps(map);
+        let mut problem = |steps: i64| problem(objective, map, u32::try_from(steps).unwrap_or(0));
+        let found = minimize(objective.name(), 1..=i64::from(most), &mut problem, &self.config());
+        let least = match found {
+            Ok(least) => least,
+            Err(MinimizeError::Problem(failure)) => return Err(failure),
+            Err(MinimizeError::Solve { error, .. }) => return self.undecided(&error).map(Found::Undecided),
+        };
+        Ok(match (least.outcome.verdict, least.undecided) {
+            _ if self.deadline.passed() => Found::Interrupted,
+            (Verdict::Realizable, None) => Found::Least(u32::try_from(least.value).ok()),
+            (Verdict::Unrealizable, _) => Found::Least(None),
+            (_, reason) => {
+                let reason = reason.or(least.outcome.reason).unwrap_or_else(|| "unknown".to_owned());
+                let limit = self.work.limit.as_secs_f64();
+                Found::Undecided(format!("the least horizon was not found within {limit} s: {reason}"))
+            }
+        })
+    }
+
+    /// What an error means for one instance; a bug of ours, or a solver's, ends everything.
+    fn undecided(&self, error: &plan::Error) -> Outcome<String> {
+        match error.exit_code() {
+            2 | 3 => Ok(error.to_string()),
+            code => Err(Failure {
+                status: failure::Status::from_code(code),
+                message: format!("{}: {error}", self.case),
+            }),
+        }
+    }
+
+    /// Writes the problem and the benchmarks of a horizon; `false` where the time is up.
+    fn horizon(&self, map: &Map, horizon: Horizon, steps: u32) -> Outcome<bool> {
+        let objective = self.case.objective;
+        let name = format!("{}-T{steps}", self.case);
+        let wanted: Vec<(String, Encoding)> =
+            self.encodings().map(|encoding| (encoding.instance(&name), encoding)).collect();
+        if wanted.iter().all(|(instance, _)| self.done.contains(instance)) {
+            return Ok(true);
+        }
+        let text = objective.problem(map, steps);
+        let problem = parsed(&text)?;
+        let Some(status) = self.status(&problem, horizon)? else { return Ok(false) };
+        if !self.fits(status) {
+            return Ok(true);
+        }
+        let file = Layout::problem(&name);
+        write_whole(self.work.folder, &file, text.as_bytes())?;
+        for (instance, encoding) in wanted {
+            if self.deadline.passed() {
+                return Ok(false);
+            }
+            if self.done.contains(&instance) {
+                continue;
+            }
+            let (states, quantifiers) = (encoding.states.to_string(), encoding.quantifiers.to_string());
+            let about = About { instance, case: self.case, horizon, steps, states, quantifiers };
+            self.benchmark(&problem, &file, encoding, status, about)?;
+        }
+        Ok(true)
+    }
+
+    fn encodings(&self) -> impl Iterator<Item = Encoding> {
+        let Work { states, quantifiers, .. } = self.work;
+        // Without a second block there is nothing to keep or to expand.
+        let single = matches!(self.case.objective, Objective::Iso | Objective::Cso);
+        let quantifiers = if single { &quantifiers[..1] } else { &quantifiers[..] };
+        states.iter().flat_map(move |&states| {
+            quantifiers.iter().map(move |&quantifiers| Encoding { states, quantifiers })
+        })
+    }
+
+    /// The status of an instance: what the search for the least horizon proved, or what the solver says; `None` where
+    /// the time is up.
+    fn status(&self, problem: &Problem, horizon: Horizon) -> Outcome<Option<Status>> {
+        match horizon {
+            Horizon::Below | Horizon::Never => return Ok(Some(Status::Unsat)),
+            Horizon::Least => return Ok(Some(Status::Sat)),
+            Horizon::Above | Horizon::Double => {}
+        }
+        let Some(objective) = problem.objective(self.case.objective.name()) else { return Ok(None) };
+        let verdict = match solve(problem, objective, &self.config()) {
+            Ok(outcome) => outcome.verdict,
+            Err(error) => self.undecided(&error).map(|_| Verdict::Unknown)?,
+        };
+        Ok(match verdict {
+            _ if self.deadline.passed() => None,
+            Verdict::Realizable => Some(Status::Sat),
+            Verdict::Unrealizable => Some(Status::Unsat),
+            Verdict::Unknown => Some(Status::Unknown),
+        })
+    }
+
+    /// Whether the track has benchmarks of that status: an unsatisfiable one has no model, a satisfiable one no core.
+    fn fits(&self, status: Status) -> bool {
+        match self.work.common.track {
+            Track::Single | Track::Incremental => true,
+            Track::Model => status == Status::Sat,
+            Track::UnsatCore => status == Status::Unsat,
+        }
+    }
+
+    fn folder(&self) -> Folder {
+        match self.work.common.track {
+            Track::Single => Folder::NonIncremental,
+            Track::Incremental => Folder::Incremental,
+            Track::Model => Folder::ModelValidation,
+            Track::UnsatCore => Folder::UnsatCore,
+        }
+    }
+
+    fn benchmark(
+        &self,
+        problem: &Problem,
+        file: &str,
+        encoding: Encoding,
+        status: Status,
+        about: About,
+    ) -> Outcome<()> {
+        let Some(objective) = problem.objective(self.case.objective.name()) else { return Ok(()) };
+        let map = self.case.map;
+        let remark = format!(
+            "Problem: {file}, a random map of {0} x {0} cells, {1} % of them obstacles, seed {2}; T = {3}",
+            map.size, map.density, map.seed, about.steps
+        );
+        let config = EmitConfig {
+            quantifiers: encoding.quantifiers,
+            states: encoding.states,
+            status: Some(status),
+            remarks: vec![remark],
+            deadline: self.deadline.within(self.work.limit),
+            ..self.work.common.clone()
+        };
+        let mut emitted = match emit(problem, objective, &config) {
+            Ok(emitted) => emitted,
+            Err(error) => return self.dropped(&about.instance, &self.undecided(&error)?),
+        };
+        if self.deadline.passed() {
+            return Ok(());
+        }
+        let mut text = Bounded::default();
+        if emitted.write(&mut text).is_err() {
+            return self.dropped(&about.instance, &format!("has more than {} MB", MOST_BYTES / 1_000_000));
+        }
+        let (text, logic) = (text.0, emitted.logic);
+        let path = self.work.layout.benchmark(self.folder(), &logic, &self.case, &about.instance);
+        write_whole(self.work.folder, &path, &text)?;
+        let entry = Entry {
+            file: path,
+            sha256: sha256(&text),
+            body: sha256(body_of(&text)),
+            bytes: text.len() as u64,
+            logic,
+            status: status.text().to_owned(),
+            problem: file.to_owned(),
+            about,
+        };
+        self.note(Record::Written(Box::new(entry)));
+        Ok(())
+    }
+}
+
+/// What came of the search for the least horizon.
+enum Found {
+    /// The least, or none up to the last that was tried.
+    Least(Option<u32>),
+    Undecided(String),
+    Interrupted,
+}
+
+impl Encoding {
+    fn instance(self, name: &str) -> String {
+        format!("{name}-{}-{}", self.states, self.quantifiers)
+    }
+}
+
+/// The problem of an objective on a map.
+fn problem(objective: Objective, map: &Map, steps: u32) -> Outcome<Problem> {
+    parsed(&objective.problem(map, steps))
+}
+
+fn parsed(text: &str) -> Outcome<Problem> {
+    let mut sources = SourceMap::new();
+    let lowered = read(&mut sources, "problem.hp", text, &NoFiles, &Overrides::default());
+    if lowered.has_errors() {
+        let message = format!("this is a bug in hyperplan: a problem that it made has errors\n{text}");
+        return Err(Failure { status: failure::Status::Bug, message });
+    }
+    Ok(lowered.problem)
+}
+
+/// A text that is not too long.
+#[derive(Default)]
+struct Bounded(Vec<u8>);
+
+impl Write for Bounded {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.0.len() + bytes.len() > MOST_BYTES {
+            return Err(io::Error::other("too long"));
+        }
+        self.0.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
