@@ -24,7 +24,8 @@ def misplaced(path: pathlib.PurePath, checked: Checked) -> str | None:
         return "expected [non-]incremental/LOGIC/YYYYMMDD-FAMILY-SUBMITTER/.../NAME.smt2"
     top, logic, family = path.parts[:3]
     if FOLDERS.get(top) != checked.track:
-        return f"a file of the {checked.track} track in {top}"
+        folder = next(folder for folder, track in FOLDERS.items() if track == checked.track)
+        return f"it lies in {top}, not in {folder}, below the folder that was named"
     if checked.logic and logic != checked.logic:
         return f"the logic is {checked.logic}, the folder's {logic}"
     date, _, rest = family.partition("-")

@@ -208,8 +208,9 @@ impl<'e, 'a> Query<'e, 'a> {
         let one_run = self.narrowing.one_run;
         match *block {
             [path] if one_run => {
-                let question = self.question([path], goal, &self.fixed);
-                let found = reach::layers(&question, true)?;
+                let mut question = self.question([path], goal, &self.fixed);
+                question.one_run = true;
+                let found = reach::layers(&question)?;
                 self.layers.insert((path, goal.clone()), Rc::new(found));
             }
             [first, second] if self.encoder.ties(first, second) => {
@@ -219,8 +220,8 @@ impl<'e, 'a> Query<'e, 'a> {
                 question.within = [Some(&alone[0]), Some(&alone[1])];
                 question.budget = self.encoder.limits.pairs;
                 let (_, rest) = goal.split(&self.encoder.objective.formula, &|path| block.contains(&path));
-                let one_run = one_run && rest.is_empty();
-                let Ok(found) = reach::pair_layers(&question, one_run) else { return self.encoder.go_on() };
+                question.one_run = one_run && rest.is_empty();
+                let Ok(found) = reach::pair_layers(&question) else { return self.encoder.go_on() };
                 for (path, found) in [first, second].into_iter().zip(found) {
                     self.layers.insert((path, goal.clone()), Rc::new(found));
                 }
@@ -288,13 +289,14 @@ impl<'e, 'a> Query<'e, 'a> {
             declared: &self.declared,
             slack: self.narrowing.slack,
             least: self.least,
+            one_run: false,
             lossy: &self.lossy,
             budget: self.encoder.limits.layer_states,
         }
     }
 
     fn explore(&self, path: PathId, goal: &Goal, fixed: &[Option<FixedPath>]) -> Result<Layers, Error> {
-        reach::layers(&self.question([path], goal, fixed), false)
+        reach::layers(&self.question([path], goal, fixed))
     }
 
     /// `None` where there is no such other path, or too many pairs.
@@ -306,7 +308,7 @@ impl<'e, 'a> Query<'e, 'a> {
         question.within = [Some(beside), alone];
         question.slack = None;
         question.budget = encoder.limits.pairs;
-        let [_, found] = reach::pair_layers(&question, false).ok()?;
+        let [_, found] = reach::pair_layers(&question).ok()?;
         Some(found)
     }
 

@@ -6,6 +6,7 @@
 mod common;
 
 use common::{hyperplan, specs, text};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -59,9 +60,14 @@ fn tools() -> bool {
     let demanded = std::env::var_os("HYPERPLAN_REQUIRE_SOLVERS").is_some_and(|value| value == "1");
     assert!(missing.is_empty() || !demanded, "{missing:?} cannot be run");
     if !missing.is_empty() {
-        eprintln!("skipped: {missing:?} cannot be run");
+        say(&format!("skipped: {missing:?} cannot be run"));
     }
     missing.is_empty()
+}
+
+/// Says something past the test's capture of output.
+fn say(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{text}");
 }
 
 fn runs(command: &[&str]) -> bool {
@@ -85,7 +91,7 @@ fn emitted(folder: &Path) -> Vec<Emitted> {
             let asked = [*problem, *kind].concat().join(" ");
             let run = hyperplan(&[&["emit", "--quiet", "-o", text(&file)], *problem, *kind].concat());
             if run.status == 2 && run.stderr.starts_with("error: ") {
-                eprintln!("refused: {asked}: {}", run.stderr.trim());
+                say(&format!("refused: {asked}: {}", run.stderr.trim()));
                 continue;
             }
             assert_eq!(run.status, 0, "{asked}: {}", run.stderr);

@@ -66,10 +66,11 @@ fn game(text: &str, steps: u32, slack: Option<u32>, test: impl FnOnce(&Encoder<'
         declared: &FxHashMap::default(),
         slack: None,
         least: 0,
+        one_run: false,
         lossy: &lossy,
         budget: 1000,
     };
-    let within = layers(&alone, false).expect("the problem is small");
+    let within = layers(&alone).expect("the problem is small");
     let against = rest.opposed(formula);
     let mut question = alone.about([p, q]);
     (question.within, question.goal, question.slack) = ([Some(&within), None], &against, slack);

@@ -60,24 +60,24 @@ impl Bound {
         };
         let graph = exploration.graphs[0];
         let mut search = Search { graph, bound: &mut bound, nodes: Vec::new(), edges: Vec::new() };
-        let starts = search.explore(exploration)?;
+        let starts = search.explore(exploration).ok()?;
         search.measure(&exploration.residuals);
         bound.least =
             starts.iter().map(|&(row, state)| bound.steps[row][state as usize][0]).min().unwrap_or(0);
         Some(bound)
     }
 
-    fn row(&mut self, residual: Residual, states: usize) -> Option<usize> {
+    fn row(&mut self, residual: Residual, states: usize) -> Result<usize, TooMany> {
         let next = self.steps.len();
         let row = *self.rows.entry(residual).or_insert(next);
         if row == next {
             if next >= MAX_RESIDUALS {
-                return None;
+                return Err(TooMany);
             }
             self.residuals.push(residual);
             self.steps.push(vec![[0, 0]; states]);
         }
-        Some(row)
+        Ok(row)
     }
 
     /// The row of what is left after a time, if something is known of it.
@@ -100,6 +100,9 @@ impl Bound {
     }
 }
 
+/// There are more residuals than are worth measuring.
+struct TooMany;
+
 struct Search<'s> {
     graph: &'s Graph,
     bound: &'s mut Bound,
@@ -110,7 +113,7 @@ struct Search<'s> {
 
 impl Search<'_> {
     /// All states with what is left there, relaxed; the initial ones.
-    fn explore(&mut self, exploration: &mut Exploration<'_, 1>) -> Option<Vec<Node>> {
+    fn explore(&mut self, exploration: &mut Exploration<'_, 1>) -> Result<Vec<Node>, TooMany> {
         let relaxed = exploration.residuals.relax(exploration.initial, Some(0), &self.bound.settling);
         let mut index: Vec<Vec<u32>> = Vec::new();
         let initial = &self.graph.initial;
@@ -129,29 +132,28 @@ impl Search<'_> {
             }
             at += 1;
         }
-        Some(starts)
+        Ok(starts)
     }
 
-    /// The node after a place is entered; `Some(None)` where it cannot matter, `None` where there are too many.
-    #[allow(clippy::option_option)]
+    /// The node after a place is entered; `None` where it cannot matter.
     fn enter(
         &mut self,
         exploration: &mut Exploration<'_, 1>,
         before: Residual,
         place: Place,
         index: &mut Vec<Vec<u32>>,
-    ) -> Option<Option<u32>> {
+    ) -> Result<Option<u32>, TooMany> {
         let question = exploration.question;
         let state = place.0;
         let live = exploration.graphs[0].rank[state as usize] == LIVE;
         if question.encoder.objective.mode == Mode::Bounded && !live {
-            return Some(None);
+            return Ok(None);
         }
         let bits = exploration.atoms.own_bits(question, &exploration.graphs, &[place]);
         let now = Now { bits: bits.holds, unknown: bits.unknown, last: false };
         let after = exploration.residuals.progress(before, now);
         if after == FALSE {
-            return Some(None);
+            return Ok(None);
         }
         let row = self.bound.row(after, self.graph.len())?;
         if index.len() <= row {
@@ -162,7 +164,7 @@ impl Search<'_> {
             *known = self.nodes.len() as u32;
             self.nodes.push((row, state));
         }
-        Some(Some(*known))
+        Ok(Some(*known))
     }
 
     /// Breadth-first searches backwards from where nothing is owed, and from where no harm is done.

@@ -283,9 +283,9 @@ impl<'a, const N: usize> Exploration<'a, N> {
         }
     }
 
-    /// What can matter of what was explored; of one run only, if asked for and there is one.
-    pub(crate) fn keep(&self, forward: &[Stage<N>], one_run: bool) -> [Layers; N] {
-        match one_run.then(|| self.run(forward)).flatten() {
+    /// What can matter of what was explored; of one run only, if that is enough and there is one.
+    pub(crate) fn keep(&self, forward: &[Stage<N>]) -> [Layers; N] {
+        match self.question.one_run.then(|| self.run(forward)).flatten() {
             Some(run) => {
                 self.question.lossy.set(true);
                 run

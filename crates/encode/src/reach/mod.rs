@@ -78,6 +78,8 @@ pub(crate) struct Question<'a, const N: usize> {
     pub(crate) slack: Option<u32>,
     /// A time before which no choice of the paths does that, if one is known.
     pub(crate) least: u32,
+    /// Whether one run is enough, of those that are there first.
+    pub(crate) one_run: bool,
     /// Set where a run was lost that the goal does not exclude.
     pub(crate) lossy: &'a Cell<bool>,
     /// Joint states, over all times, beyond which to give up.
@@ -87,22 +89,24 @@ pub(crate) struct Question<'a, const N: usize> {
 impl<'a, const N: usize> Question<'a, N> {
     /// The same question about another choice of paths.
     pub(crate) fn about<const M: usize>(&self, paths: [PathId; M]) -> Question<'a, M> {
-        let Question { encoder, goal, fixed, declared, slack, least, lossy, budget, .. } = *self;
-        Question { encoder, paths, within: [None; M], goal, fixed, declared, slack, least, lossy, budget }
+        let Question { encoder, goal, fixed, declared, slack, least, one_run, lossy, budget, .. } = *self;
+        let within = [None; M];
+        Question { encoder, paths, within, goal, fixed, declared, slack, least, one_run, lossy, budget }
     }
 }
 
 /// The state of one explored path and the action that led there.
 pub(crate) type Place = (StateIx, Option<ActionId>);
 
-/// The states of an explored path that can matter at each time; one run, if asked for and there is one.
+/// The states of an explored path that can matter at each time; those of one run, if that is enough and
+/// it can be told.
 ///
 /// # Errors
 /// [`Error::TooLarge`] beyond the budget.
-pub(crate) fn layers(question: &Question<'_, 1>, one_run: bool) -> Result<Layers, Error> {
+pub(crate) fn layers(question: &Question<'_, 1>) -> Result<Layers, Error> {
     let mut exploration = Exploration::bounded(question)?;
     let forward = exploration.forward()?;
-    let [layers] = exploration.keep(&forward, one_run);
+    let [layers] = exploration.keep(&forward);
     Ok(layers)
 }
 
@@ -111,10 +115,10 @@ pub(crate) fn layers(question: &Question<'_, 1>, one_run: bool) -> Result<Layers
 ///
 /// # Errors
 /// [`Error::TooLarge`] beyond the budget.
-pub(crate) fn pair_layers(question: &Question<'_, 2>, one_run: bool) -> Result<[Layers; 2], Error> {
+pub(crate) fn pair_layers(question: &Question<'_, 2>) -> Result<[Layers; 2], Error> {
     let mut exploration = Exploration::new(question)?;
     let forward = exploration.forward()?;
-    Ok(exploration.keep(&forward, one_run))
+    Ok(exploration.keep(&forward))
 }
 
 /// A time before which no run of an explored path owes nothing but safety.

@@ -43,14 +43,15 @@ fn ranges(slack: Option<u32>) -> [Vec<Option<(i64, i64)>>; 2] {
         declared,
         slack,
         least: 0,
+        one_run: false,
         lossy: &lossy,
         budget: 1000,
     };
-    let of_p = layers(&question(&goal, &nothing, p, slack), false).expect("the walk is short");
+    let of_p = layers(&question(&goal, &nothing, p, slack)).expect("the walk is short");
     let declared = FxHashMap::from_iter([(p, Rc::new(of_p.clone()))]);
     let (_, rest) = goal.split(&objective.formula, &|path| path == p);
     let against = rest.opposed(&objective.formula);
-    let of_q = layers(&question(&against, &declared, q, None), false).expect("the walk is short");
+    let of_q = layers(&question(&against, &declared, q, None)).expect("the walk is short");
     let range = |layers: Layers| {
         let graph = encoder.graph(p).expect("the system is small");
         let at = |states: &Vec<u32>| {

@@ -99,6 +99,8 @@ pub struct Emitted {
     pub symbols: usize,
     /// Assertions.
     pub assertions: usize,
+    /// How often it asks.
+    pub checks: usize,
     /// What the user should know.
     pub notes: Vec<String>,
 }
@@ -240,7 +242,11 @@ fn build(encoder: &Encoder<'_>, config: &EmitConfig, dialect: &Dialect) -> Resul
         ..WriteOptions::default()
     };
     let states = States::from(encoder.states);
-    Ok(Emitted { body, options, logic, status, quantifiers, states, symbols, assertions, notes })
+    let checks = match &body {
+        Body::Query(_) => 1,
+        Body::Dialogue(tape) => tape.checks,
+    };
+    Ok(Emitted { body, options, logic, status, quantifiers, states, symbols, assertions, checks, notes })
 }
 
 /// How quantifiers are written, and whether that fits the track.
