@@ -80,6 +80,8 @@ def judged(script: Script, logic: str) -> list[tuple[int, str, str]]:
     need, has = needed(script, logic), features(logic)
     for feature in sorted(need.keys() - has):
         name, rule = NAMES[feature]
+        if need == {"functions": 0}:
+            name = "nothing but Booleans"
         wrong.append((need[feature], rule, f"{name}, and the logic is {logic}"))
     others = [features(other) for other in LOGICS if other.startswith("QF_") == free]
     less = [other for other in others if need.keys() <= other < has]

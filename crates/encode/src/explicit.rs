@@ -145,7 +145,7 @@ impl ExplicitPath {
         alphabet: &Alphabet,
         stop: Stop<'_>,
     ) -> Result<Self, Error> {
-        script.section(format!("path.{}", names.path), format!("path {}", names.path));
+        script.section(format!("path.{}", names.path), format!("path {}: where it starts", names.path));
         if layers.at.iter().any(Vec::is_empty) {
             script.assert(Term::FALSE);
         }
@@ -167,6 +167,7 @@ impl ExplicitPath {
             if stop() {
                 return Err(Error::Interrupted);
             }
+            names.begin_step(script, time + 1);
             let letters = letters_between(graph, layers, time);
             let place = Place { time: time + 1, bound: false };
             let choice = names.choose_letter(&mut script.terms, graph, &letters, &place, alphabet);

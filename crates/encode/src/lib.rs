@@ -160,7 +160,7 @@ pub enum Error {
         system: String,
     },
     /// A system has integers or reals without bounds.
-    #[error("system {system} has variables without bounds, which takes --states int")]
+    #[error("system {system} has variables without bounds, which takes --states int or real")]
     Unbounded {
         /// The system.
         system: String,

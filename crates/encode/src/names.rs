@@ -3,7 +3,7 @@
 use crate::choice::{Alphabet, Choice, Place};
 use crate::graph::{Graph, Letter, StateIx};
 use hyperplan_problem::{Problem, System, Type, Value};
-use hyperplan_smt::Terms;
+use hyperplan_smt::{Script, Terms};
 use std::borrow::Cow;
 
 /// Names the symbols of one path.
@@ -17,7 +17,7 @@ pub(crate) struct Names<'a> {
 /// A name as a part of a symbol's. Names from graph files may be anything, dots and slashes included: a number then
 /// keeps the symbols of different things different.
 fn plain(name: &str, number: u32) -> Cow<'_, str> {
-    if name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_') {
+    if name.bytes().all(|b| b.is_ascii_alphanumeric() || b" _-+*=<>".contains(&b)) && !name.is_empty() {
         Cow::Borrowed(name)
     } else {
         Cow::Owned(format!("#{number}"))
@@ -57,6 +57,12 @@ impl Names<'_> {
             0 => format!("{}.{action}", self.path),
             _ => format!("{}.{action}/{number}", self.path),
         }
+    }
+
+    /// The assertions of a step come next.
+    pub(crate) fn begin_step(&self, script: &mut Script, step: usize) {
+        let path = &self.path;
+        script.section(format!("path.{path}.{step}"), format!("path {path}: step {step}"));
     }
 
     /// Which of some states it is.

@@ -61,7 +61,6 @@ type Way = Vec<Term>;
 pub(crate) fn sweep(sweep: &Sweep<'_, '_>, script: &mut Script) -> Option<()> {
     let mut runs = Runs::new(sweep)?;
     let path = &sweep.names.path;
-    script.section(format!("runs.{path}"), format!("no run of path {path} defeats the others"));
     let mut frontier = Frontier::new();
     let mut ways: BTreeMap<Pair, Vec<Way>> = BTreeMap::new();
     for &state in &sweep.layers.at[0] {
@@ -69,6 +68,8 @@ pub(crate) fn sweep(sweep: &Sweep<'_, '_>, script: &mut Script) -> Option<()> {
     }
     let mut total = 0;
     for time in 0..=runs.horizon {
+        let text = format!("no run of path {path} defeats the others: time {time}");
+        script.section(format!("runs.{path}.{time}"), text);
         runs.keep_open(time, &mut ways);
         runs.settle(script, time, std::mem::take(&mut ways), &mut frontier);
         runs.avoid_mistakes(script, time, &frontier);

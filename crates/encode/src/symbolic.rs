@@ -64,12 +64,16 @@ impl Builder<'_> {
 
     /// A path that the solver chooses.
     pub(crate) fn declare(&self, script: &mut Script) -> SymbolicPath {
-        script.section(format!("path.{}", self.names.path), format!("path {}", self.names.path));
+        script.section(
+            format!("path.{}", self.names.path),
+            format!("path {}: where it starts", self.names.path),
+        );
         let first = self.variables(&mut script.terms, 0, false);
         let start = self.initial(&mut script.terms, &first);
         script.assert(start);
         let mut path = SymbolicPath { states: vec![Rc::new(first)], steps: Vec::new() };
         for time in 0..self.horizon {
+            self.names.begin_step(script, time as usize + 1);
             let here = path.states[time as usize].clone();
             let step = self.choice(&mut script.terms, time + 1, false);
             // The inputs of a step are the new values themselves.
@@ -85,6 +89,8 @@ impl Builder<'_> {
             path.states.push(Rc::new(there));
             path.steps.push(Rc::new(step));
         }
+        let name = &self.names.path;
+        script.section(format!("path.{name}"), format!("path {name}: it can go on"));
         let lives = self.ends_live(&mut script.terms, &path);
         script.assert(lives);
         path

@@ -340,7 +340,8 @@ pub(crate) struct Verify {
     /// A strategy, as `solve --save` and `solve --format json` write it
     #[arg(value_name = "STRATEGY.json", required_unless_present = "model", conflicts_with = "model")]
     pub(crate) strategy: Option<PathBuf>,
-    /// What a solver printed for a query that `emit` wrote: its model, by (get-model) or (get-value (...))
+    /// What a solver printed for a query that `emit` wrote: its model, by (get-model) or (get-value (...));
+    /// `-` is standard input
     #[arg(long, value_name = "FILE")]
     pub(crate) model: Option<PathBuf>,
     /// Saves the strategy that the model describes, as JSON

@@ -25,6 +25,14 @@ impl Store {
     pub(crate) fn open(folder: &Path, head: Head) -> Outcome<Self> {
         fs::create_dir_all(folder).map_err(|e| cannot_write(folder, &e))?;
         let path = folder.join(LOG);
+        let foreign =
+            !path.exists() && fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some());
+        if foreign {
+            return Err(Failure::input(format_args!(
+                "{} has other files; a family needs a directory of its own",
+                folder.display()
+            )));
+        }
         let mut log = OpenOptions::new()
             .create(true)
             .truncate(false)

@@ -102,7 +102,7 @@ fn tracks() {
     let assertions = lines(&core, "(assert ");
     let named = assertions.iter().filter(|line| line.contains(":named $")).count();
     assert_eq!(named, assertions.len());
-    assert!(core.contains("\n; path p\n") && core.contains(":named $path.p/1)"));
+    assert!(core.contains("\n; path p: step 1\n") && core.contains(":named $path.p.1/1)"));
     let bare = emit(&[&options[..], &["--no-comments"]].concat());
     assert!(bare.lines().all(|line| !line.starts_with(';')));
 

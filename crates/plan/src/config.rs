@@ -228,6 +228,9 @@ pub enum Error {
     /// All solvers of a race failed.
     #[error("no solver gave an answer: {}", listed(.0))]
     Race(Vec<(String, Error)>),
+    /// The time was up before there was anything to show.
+    #[error("stopped ({0}) before the query was built")]
+    Late(String),
     /// A file could not be read or written.
     #[error("{0}")]
     Io(String),
@@ -242,7 +245,7 @@ impl Error {
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
-            Error::Encode(encode::Error::Interrupted) => 3,
+            Error::Encode(encode::Error::Interrupted) | Error::Late(_) => 3,
             Error::Unsupported(_) | Error::Encode(_) | Error::Io(_) => 2,
             Error::Solver(error) if error.is_unsupported() => 2,
             Error::Solver(_) | Error::WrongModel { .. } | Error::Disagreement { .. } => 4,

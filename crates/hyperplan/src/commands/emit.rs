@@ -20,7 +20,7 @@ pub(crate) fn run(args: &args::Emit, out: &mut Output) -> Outcome {
     let Some(file) = &args.file else { return emit_family::run(args, out) };
     let common = common(args, &config::date(args.date.as_deref())?)?;
     let text = read_source(file)?;
-    let mut target = None;
+    let (mut target, mut worst) = (None, Status::Good);
     for setting in settings(args)? {
         let mut set = args.set.clone();
         set.extend(setting.clone());
@@ -36,17 +36,23 @@ pub(crate) fn run(args: &args::Emit, out: &mut Output) -> Outcome {
         for objective in objectives {
             for (quantifiers, states) in encodings(args) {
                 let config = EmitConfig { quantifiers, states, ..common.clone() };
-                let mut emitted = emit(&loaded.problem, objective, &config).map_err(|e| Failure {
-                    status: Status::from_code(e.exit_code()),
-                    message: format!("{}: {e}", objective.name),
-                })?;
-                emitted.notes.iter().for_each(|note| out.remark(format_args!("note: {note}")));
+                let mut emitted = match emit(&loaded.problem, objective, &config) {
+                    Ok(emitted) => emitted,
+                    Err(error) => {
+                        // The other files may do better.
+                        out.error(format_args!("error: {}: {error}", objective.name));
+                        worst = worst.max(Status::from_code(error.exit_code()));
+                        continue;
+                    }
+                };
+                let whose = if several { format!("{}: ", objective.name) } else { String::new() };
+                emitted.notes.iter().for_each(|note| out.remark(format_args!("note: {whose}{note}")));
                 let name = Name { objective: &objective.name, setting: setting.as_ref(), args };
                 target.write(&name.of(&config), &mut emitted, out)?;
             }
         }
     }
-    Ok(Status::Good)
+    Ok(worst)
 }
 
 /// What all benchmarks of a command have in common.
@@ -79,7 +85,9 @@ fn remarks(loaded: &Loaded, consts: &Consts) -> Vec<String> {
         .iter()
         .map(|(name, value)| format!("{name} = {}", display::value(&Type::Int, *value)))
         .collect();
-    let mut remarks = vec![format!("Problem: {}", loaded.file)];
+    // Without folders, which are this machine's.
+    let file = Path::new(&loaded.file).file_name().unwrap_or_default().to_string_lossy();
+    let mut remarks = vec![format!("Problem: {file}")];
     if !values.is_empty() {
         remarks.push(format!("Constants: {}.", values.join(", ")));
     }
@@ -138,6 +146,15 @@ impl Target {
             }
             return Ok(Target::Standard);
         };
+        if !several && path == Path::new("-") {
+            return Ok(Target::Standard);
+        }
+        if several && path.extension().is_some_and(|extension| extension == "smt2") && !path.is_dir() {
+            let path = path.display();
+            return Err(Failure::input(format_args!(
+                "several files need a directory, and {path} looks like a file"
+            )));
+        }
         let ends_like_folder = path.as_os_str().to_string_lossy().ends_with(std::path::MAIN_SEPARATOR);
         if several || path.is_dir() || ends_like_folder {
             std::fs::create_dir_all(path).map_err(|e| cannot_write(path, &e))?;
@@ -150,17 +167,35 @@ impl Target {
     fn write(&self, name: &str, emitted: &mut Emitted, out: &mut Output) -> Outcome<()> {
         match self {
             Target::Standard => out.write(|w| emitted.write(w)),
-            Target::File(path) => write_to(path, emitted),
-            Target::Folder(folder) => write_to(&folder.join(name), emitted),
+            Target::File(path) => write_to(path, emitted, out),
+            Target::Folder(folder) => write_to(&folder.join(name), emitted, out),
         }
     }
 }
 
-fn write_to(path: &Path, emitted: &mut Emitted) -> Outcome<()> {
-    let mut write = || {
-        let mut file = BufWriter::new(File::create(path)?);
-        emitted.write(&mut file)?;
-        file.flush()
-    };
-    write().map_err(|e| cannot_write(path, &e))
+/// The most bytes that SMT-LIB takes.
+const LARGEST: u64 = 50_000_000;
+
+/// Writes a file as a whole or not at all; what is no file, such as a device, as it comes.
+fn write_to(path: &Path, emitted: &mut Emitted, out: &Output) -> Outcome<()> {
+    let cannot = |e: std::io::Error| cannot_write(path, &e);
+    if std::fs::metadata(path).is_ok_and(|known| !known.is_file()) {
+        let mut device = BufWriter::new(File::create(path).map_err(cannot)?);
+        return emitted.write(&mut device).and_then(|()| device.flush()).map_err(cannot);
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut options = tempfile::Builder::new();
+    #[cfg(unix)]
+    options.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = options.tempfile_in(folder).map_err(cannot)?;
+    let mut buffer = BufWriter::new(file.as_file_mut());
+    emitted.write(&mut buffer).and_then(|()| buffer.flush()).map_err(cannot)?;
+    drop(buffer);
+    let bytes = file.as_file().metadata().map_or(0, |known| known.len());
+    file.persist(path).map_err(|e| cannot(e.error))?;
+    if bytes > LARGEST {
+        let megabytes = bytes / 1_000_000;
+        out.remark(format_args!("note: {} has {megabytes} MB; SMT-LIB takes at most 50", path.display()));
+    }
+    Ok(())
 }

@@ -93,6 +93,10 @@ impl<'a> Work<'a> {
             [Quantifiers::Auto] => vec![plan::Quantifiers::Expand, plan::Quantifiers::Keep],
             chosen => once(chosen).into_iter().map(config::quantifiers).collect(),
         };
+        if args.track != args::Track::Incremental && quantifiers.contains(&plan::Quantifiers::Cegis) {
+            let what = "--quantifiers cegis makes incremental benchmarks: add --track incremental";
+            return Err(Failure::input(what));
+        }
         let common = emit::common(args, &date)?;
         // What cannot matter is left in: a solver has to find that out, which makes the harder benchmarks.
         let common = EmitConfig { limits: Limits { prune: false, ..common.limits }, ..common };

@@ -57,7 +57,12 @@ fn of_model<'l>(
     file: &Path,
 ) -> Outcome<Vec<(&'l Objective, Strategy)>> {
     let shown = file.display();
-    let model = PrintedModel::read(&read_source(file)?);
+    let text = match file.to_str() {
+        Some("-") => std::io::read_to_string(std::io::stdin())
+            .map_err(|e| Failure::input(format_args!("cannot read standard input: {e}")))?,
+        _ => read_source(file)?,
+    };
+    let model = PrintedModel::read(&text);
     let model = model.map_err(|e| Failure::input(format_args!("{shown} is no model: {e}")))?;
     let objectives = loaded.selected(name, false)?;
     let strategy = |objective: &'l Objective| {

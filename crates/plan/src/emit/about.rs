@@ -4,6 +4,7 @@ use super::EmitConfig;
 use crate::config::Quantifiers;
 use hyperplan_encode::{Encoder, States};
 use hyperplan_problem::{Map, System, display};
+use hyperplan_smt::Features;
 use std::fmt::Write as _;
 
 /// The most columns and rows of a map that is drawn.
@@ -13,8 +14,8 @@ const LARGEST_DRAWN: u32 = 100;
 pub(super) fn source(
     encoder: &Encoder<'_>,
     config: &EmitConfig,
-    quantifiers: Quantifiers,
-    exists: bool,
+    quantifiers: &str,
+    changes: &[String],
 ) -> String {
     let objective = encoder.objective;
     let version = env!("CARGO_PKG_VERSION");
@@ -42,7 +43,10 @@ pub(super) fn source(
         .collect();
     line(&format!("Horizons: {}.", horizons.join(", ")));
     line(&format!("States: {}.", states(encoder.states)));
-    line(&format!("Quantifiers: {}.", meaning(quantifiers, exists)));
+    line(&format!("Quantifiers: {quantifiers}."));
+    for change in changes {
+        line(&format!("For {target}: {change}."));
+    }
     let mut described: Vec<&str> = Vec::new();
     for path in objective.paths.keys() {
         let system = encoder.system(path);
@@ -64,9 +68,11 @@ fn states(states: States) -> &'static str {
     }
 }
 
-fn meaning(quantifiers: Quantifiers, exists: bool) -> String {
+/// What became of the quantifiers, and what the answer means.
+pub(super) fn quantifiers(quantifiers: Quantifiers, features: &Features, exists: bool) -> String {
     let meaning = if exists { "a strategy" } else { "a counterexample" };
     let how = match quantifiers {
+        _ if !features.quantifiers && quantifiers == Quantifiers::Keep => "none are left",
         Quantifiers::Keep => "those after the leading block are kept, as in formula (16) of the paper",
         Quantifiers::Cegis => {
             return "by counterexamples: candidates are asked for at the bottom of the assertion stack, and above it \

@@ -9,7 +9,9 @@ pub(super) struct Dialect(Option<Facts>);
 
 impl Dialect {
     pub(super) fn new(solver: Option<&Spec>) -> Self {
-        Dialect(solver.map(Facts::of))
+        // Of a command nothing is known.
+        let known = solver.filter(|solver| !matches!(solver, Spec::Command(_)));
+        Dialect(known.map(Facts::of))
     }
 
     /// Quantifiers are kept where the solver takes them.

@@ -99,8 +99,6 @@ pub struct Emitted {
     pub symbols: usize,
     /// Assertions.
     pub assertions: usize,
-    /// How often it asks.
-    pub checks: usize,
     /// What the user should know.
     pub notes: Vec<String>,
 }
@@ -144,8 +142,17 @@ impl Emitted {
 pub fn emit(problem: &Problem, objective: &Objective, config: &EmitConfig) -> Result<Emitted, Error> {
     let stop = || config.deadline.passed();
     let dialect = Dialect::new(config.solver.as_ref());
-    settled(problem, objective, config.states.wish(), config.limits, &stop, |encoder| {
+    // A core is about everything that was said, whether it can matter or not.
+    let prune = config.limits.prune && config.track != Track::UnsatCore;
+    let limits = Limits { prune, ..config.limits };
+    let emitted = settled(problem, objective, config.states.wish(), limits, &stop, |encoder| {
         build(encoder, config, &dialect)
+    });
+    emitted.map_err(|error| match error {
+        Error::Encode(hyperplan_encode::Error::Interrupted) => {
+            Error::Late(config.deadline.reason().to_owned())
+        }
+        error => error,
     })
 }
 
@@ -193,7 +200,8 @@ fn build(encoder: &Encoder<'_>, config: &EmitConfig, dialect: &Dialect) -> Resul
     let objective = encoder.objective;
     let blocks = blocks(objective);
     let exists = objective.paths.first().is_none_or(|p| p.quantifier == Quantifier::Exists);
-    let quantifiers = quantifiers(config, blocks.len(), dialect, &mut notes)?;
+    let mut changes = Vec::new();
+    let quantifiers = quantifiers(config, blocks.len(), dialect, &mut changes)?;
     let (body, found) = match quantifiers {
         Quantifiers::Cegis => {
             let (tape, found) = dialogue(encoder, config, &blocks, exists, &mut notes)?;
@@ -217,22 +225,23 @@ fn build(encoder: &Encoder<'_>, config: &EmitConfig, dialect: &Dialect) -> Resul
             objective.name
         ));
     }
-    let ask = asked(config.track, status, &mut notes);
+    let ask = asked(config.track, status)?;
     let (features, symbols, assertions) = match &body {
         Body::Query(script) => (Features::of(script), script.symbols().len(), script.len()),
         Body::Dialogue(tape) => (tape.features(), tape.symbols, tape.assertions),
     };
-    let logic = dialect.logic(&features, &mut notes)?;
+    let logic = dialect.logic(&features, &mut changes)?;
     let header = Header {
-        source: Some(about::source(encoder, config, quantifiers, exists)),
+        source: Some(about::source(
+            encoder,
+            config,
+            &about::quantifiers(quantifiers, &features, exists),
+            &changes,
+        )),
         license: Some("https://creativecommons.org/licenses/by/4.0/".into()),
         category: Some("crafted".into()),
         // A dialogue says it of each check.
-        status: match &body {
-            Body::Dialogue(tape) if tape.checks > 1 => None,
-            Body::Dialogue(tape) => tape.first,
-            Body::Query(_) => Some(status),
-        },
+        status: matches!(body, Body::Query(_)).then_some(status),
     };
     let options = WriteOptions {
         header,
@@ -242,11 +251,8 @@ fn build(encoder: &Encoder<'_>, config: &EmitConfig, dialect: &Dialect) -> Resul
         ..WriteOptions::default()
     };
     let states = States::from(encoder.states);
-    let checks = match &body {
-        Body::Query(_) => 1,
-        Body::Dialogue(tape) => tape.checks,
-    };
-    Ok(Emitted { body, options, logic, status, quantifiers, states, symbols, assertions, checks, notes })
+    notes.extend(changes);
+    Ok(Emitted { body, options, logic, status, quantifiers, states, symbols, assertions, notes })
 }
 
 /// How quantifiers are written, and whether that fits the track.
@@ -276,21 +282,17 @@ fn quantifiers(
 }
 
 /// What the track asks for besides the answer.
-fn asked(track: Track, status: Status, notes: &mut Vec<String>) -> Ask {
+fn asked(track: Track, status: Status) -> Result<Ask, Error> {
     match (track, status) {
-        (Track::Single | Track::Incremental, _) => Ask::Answer,
-        (Track::Model, status) => {
-            if status == Status::Unsat {
-                notes.push("the query is unsatisfiable: it has no model".into());
-            }
-            Ask::Model
+        (Track::Single | Track::Incremental, _) => Ok(Ask::Answer),
+        (Track::Model, Status::Unsat) => {
+            Err(Error::Unsupported("the query is unsatisfiable: there is no model to ask for".into()))
         }
-        (Track::UnsatCore, status) => {
-            if status == Status::Sat {
-                notes.push("the query is satisfiable: it has no unsatisfiable core".into());
-            }
-            Ask::Core
-        }
+        (Track::Model, _) => Ok(Ask::Model),
+        (Track::UnsatCore, Status::Sat) => Err(Error::Unsupported(
+            "the query is satisfiable: there is no unsatisfiable core to ask for".into(),
+        )),
+        (Track::UnsatCore, _) => Ok(Ask::Core),
     }
 }
 
@@ -348,13 +350,14 @@ fn dialogue(
         }
     };
     let tape = oracle.tape.take().unwrap_or_else(|| Tape::new(config.comments));
-    if tape.checks == 0 {
-        return Err(Error::Unsupported(
-            "nothing was asked before the search ended: give it more time".into(),
-        ));
-    }
-    if tape.checks == 1 {
-        notes.push("the search asks only once, which makes no incremental benchmark".into());
+    if tape.checks < 2 {
+        let what = match status {
+            Some(Status::Unknown) => "the search did not get to ask twice: give it more time",
+            _ => {
+                "the search asks only once, which makes no incremental benchmark; use --quantifiers keep or expand"
+            }
+        };
+        return Err(Error::Unsupported(what.into()));
     }
     Ok((tape.finished()?, status))
 }

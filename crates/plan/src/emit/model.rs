@@ -89,6 +89,8 @@ fn strategy(
         Some(known.trace(path, encoder.system(path)))
     };
     let traces: Option<Vec<_>> = block.iter().map(trace).collect();
-    let wrong = || Error::Unsupported("it describes no paths of the objective's systems".into());
+    let wrong = || {
+        Error::Unsupported("it describes no paths of the objective's systems; is it of another objective, or with another --set?".into())
+    };
     Ok(Strategy { traces: traces.ok_or_else(wrong)? })
 }

@@ -6,7 +6,7 @@
 
 use crate::config::Error;
 use hyperplan_smt::{Features, Printer, Script, Status, write_comment};
-use std::io::{self, BufRead as _, BufReader, Seek as _, Write};
+use std::io::{self, Seek as _, Write};
 use tempfile::SpooledTempFile;
 
 /// How many bytes stay in memory.
@@ -21,8 +21,6 @@ pub(crate) struct Tape {
     features: Features,
     comments: bool,
     pub(super) checks: usize,
-    /// The first answer.
-    pub(super) first: Option<Status>,
     pub(super) symbols: usize,
     pub(super) assertions: usize,
     /// The first failure; nothing is written after it.
@@ -43,7 +41,6 @@ impl Tape {
             features: Features::default(),
             comments,
             checks: 0,
-            first: None,
             symbols: 0,
             assertions: 0,
             failure: None,
@@ -105,7 +102,6 @@ impl Tape {
         scope.fed = script.len();
         self.checks += 1;
         let status = if satisfiable { Status::Sat } else { Status::Unsat };
-        self.first.get_or_insert(status);
         writeln!(text, "(set-info :status {})", status.text())?;
         text.extend_from_slice(b"(check-sat)\n");
         self.text.write_all(&text)
@@ -117,21 +113,10 @@ impl Tape {
         }
     }
 
-    /// Writes what was said. Of a single check the status is told by the header.
-    pub(super) fn copy(&mut self, to: &mut dyn Write) -> io::Result<()> {
+    /// Writes what was said.
+    pub(super) fn copy(&mut self, mut to: &mut dyn Write) -> io::Result<()> {
         self.text.rewind()?;
-        if self.checks > 1 {
-            return io::copy(&mut self.text, to).map(|_| ());
-        }
-        let mut line = Vec::new();
-        let mut text = BufReader::new(&mut self.text);
-        while text.read_until(b'\n', &mut line)? > 0 {
-            if !line.starts_with(b"(set-info :status ") {
-                to.write_all(&line)?;
-            }
-            line.clear();
-        }
-        Ok(())
+        io::copy(&mut self.text, &mut to).map(|_| ())
     }
 
     /// The tape, unless something could not be kept.

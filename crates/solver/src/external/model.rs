@@ -43,7 +43,7 @@ impl PrintedModel {
         let mut splitter = Splitter::default();
         splitter.feed(output.as_bytes());
         splitter.finish();
-        let (mut model, mut trouble) = (PrintedModel::default(), None);
+        let (mut model, mut trouble, mut empty) = (PrintedModel::default(), None, false);
         while let Some(reply) = splitter.next() {
             match meaning(&reply) {
                 Meaning::Answer(Some(true)) | Meaning::Noise => {}
@@ -54,6 +54,7 @@ impl PrintedModel {
                 Meaning::Error(message) => trouble = trouble.or(Some(PrintedModelError::Failed(message))),
                 Meaning::Other => {
                     if let Reply::Expression(text) = &reply {
+                        empty |= matches!(parts(text).as_deref(), Some([] | ["model"]));
                         model.entry(text);
                     }
                 }
@@ -62,7 +63,7 @@ impl PrintedModel {
         match trouble {
             // What comes with such an answer is a guess.
             Some(PrintedModelError::NoModel(answer)) => Err(PrintedModelError::NoModel(answer)),
-            _ if !model.values.is_empty() => Ok(model),
+            _ if !model.values.is_empty() || empty => Ok(model),
             trouble => Err(trouble.unwrap_or(PrintedModelError::Empty)),
         }
     }

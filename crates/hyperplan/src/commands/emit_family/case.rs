@@ -223,9 +223,6 @@ impl One<'_> {
         if self.deadline.passed() {
             return Ok(());
         }
-        if emitted.checks < 2 && self.work.common.track == Track::Incremental {
-            return self.dropped(&about.instance, "the search asks only once");
-        }
         let mut text = Bounded::default();
         if emitted.write(&mut text).is_err() {
             return self.dropped(&about.instance, &format!("has more than {} MB", MOST_BYTES / 1_000_000));
