@@ -139,7 +139,7 @@ fn solvers_agree_on_the_files() {
     for Emitted { asked, file } in emitted(folder.path()) {
         let expected = expected(&file);
         assert!(!expected.is_empty() && expected.iter().all(|status| status != "unknown"), "{asked}");
-        for solver in [&["z3", "-T:20"][..], &["cvc5", "--incremental", "--tlimit=20000"]] {
+        for solver in [&["z3", "-T:10"][..], &["cvc5", "--incremental", "--tlimit=10000"]] {
             let run = Command::new(solver[0]).args(&solver[1..]).arg(&file).output().expect("it was found");
             let output = String::from_utf8_lossy(&run.stdout).into_owned();
             let answers = output.lines().filter(|line| ["sat", "unsat", "unknown"].contains(&line.trim()));

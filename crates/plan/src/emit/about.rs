@@ -3,7 +3,7 @@
 use super::EmitConfig;
 use crate::config::Quantifiers;
 use hyperplan_encode::{Encoder, States};
-use hyperplan_problem::{Map, System, display};
+use hyperplan_problem::{Map, Mode, Objective, System, display};
 use hyperplan_smt::Features;
 use std::fmt::Write as _;
 
@@ -32,7 +32,7 @@ pub(super) fn source(
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{}", line.trim_end());
     };
-    line(&format!("Objective {}: {formula}", objective.name));
+    line(&format!("Objective {}{}: {formula}", objective.name, within(objective)));
     for remark in &config.remarks {
         line(remark);
     }
@@ -56,6 +56,15 @@ pub(super) fn source(
         }
     }
     text.replace(" | ", " or ")
+}
+
+/// How the objective's operators are read, as the language has it.
+fn within(objective: &Objective) -> String {
+    let Mode::Within(steps) = objective.mode else { return String::new() };
+    match objective.semantics {
+        None => format!(" within {steps}"),
+        Some(semantics) => format!(" within {steps} semantics {}, translated", semantics.name()),
+    }
 }
 
 fn states(states: States) -> &'static str {
