@@ -33,11 +33,39 @@ def compare(arguments: argparse.Namespace, *options: str) -> tuple[list[dict], i
     command = [str(pathlib.Path(program).resolve()) if os.sep in program else program, "compare", *options]
     command += ["--timeout", f"{arguments.timeout:g}", "--out", str(arguments.out.resolve())]
     # The tables are on standard output, where the script's own is to come.
-    status = subprocess.run(command, stdout=sys.stderr, cwd=ROOT, check=False).returncode
+    try:
+        process = subprocess.Popen(command, stdout=sys.stderr, cwd=ROOT)
+    except OSError as error:
+        sys.exit(f"cannot run {program}: {error.strerror}; build it with cargo build --release -p hyperplan, or name it: --hyperplan FILE")
+    status = ended(process)
     runs = arguments.out / "runs.json"
     if status not in (0, 4, 5) or not runs.is_file():
         sys.exit(status or 1)
     return json.loads(runs.read_text()), status
+
+
+def ended(process: subprocess.Popen) -> int:
+    """How it ended. Ctrl-C goes to both; the program says what is done and what to do, and this ends with it."""
+    try:
+        return process.wait()
+    except KeyboardInterrupt:
+        try:
+            process.wait()
+        except KeyboardInterrupt:
+            process.kill()
+        sys.exit(130)
+
+
+def wrong(out: pathlib.Path) -> list[str]:
+    """What the last report in the folder finds wrong with answers, a line each."""
+    scores = out / "scores.json"
+    findings = json.loads(scores.read_text())["judgement"]["findings"] if scores.is_file() else []
+    lines = []
+    for finding in findings:
+        said = [f"{claim['who']} {claim['answer'] or claim['message'] or ''}".strip() for claim in finding["claims"]]
+        known = f" (known: {finding['truth']})" if finding["truth"] else ""
+        lines.append(f"{finding['instance']}: {finding['kind']}: {'; '.join(said)}{known}")
+    return lines
 
 
 def result(records: list[dict]) -> str:

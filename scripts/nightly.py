@@ -26,12 +26,19 @@ def main() -> None:
     before = sorted(path.parent for path in nights.glob("*/runs.json") if path.parent.name < arguments.day)
     arguments.out = nights / arguments.day
     records, status = compared.compare(arguments, *(named or PROBLEMS), *others)
+    findings = compared.wrong(arguments.out)
+    if findings or status:
+        print(f"answers are wrong: hyperplan compare ends with {status}")
+    for line in findings:
+        print(f"  {line}")
     if not before:
         print("nothing to compare with")
         sys.exit(status)
     last = before[-1]
-    worse = list(regressions(grouped(json.loads((last / "runs.json").read_text())), grouped(records)))
-    print(f"{len(worse)} runs are worse than on {last.name}")
+    old, new = grouped(json.loads((last / "runs.json").read_text())), grouped(records)
+    worse = list(regressions(old, new))
+    both = len(old.keys() & new.keys())
+    print(f"{len(worse)} of {both} runs are worse than on {last.name}; {len(new) - both} are new, {len(old) - both} gone")
     for line in worse:
         print(f"  {line}")
     sys.exit(status or (1 if worse else 0))

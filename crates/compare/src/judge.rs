@@ -30,6 +30,8 @@ pub enum Kind {
 pub enum Fault {
     /// A solver's: it was asked the same as one that says otherwise, or got a query and no more, or its model is wrong.
     Solver,
+    /// A solver's, or that of who wrote the known status: several solvers answered, and none says what it says.
+    Status,
     /// Ours, for all that is known: nothing clears the encoding.
     Ours,
 }
@@ -83,7 +85,7 @@ impl Judgement {
     pub fn exit_code(&self) -> u8 {
         match self.findings.iter().map(|finding| finding.fault).max() {
             None => 0,
-            Some(Fault::Solver) => 4,
+            Some(Fault::Solver | Fault::Status) => 4,
             Some(Fault::Ours) => 5,
         }
     }
@@ -107,8 +109,7 @@ pub(crate) fn judge_contest(contest: &Contest<'_>) -> Judgement {
             })
             .collect();
         let instance = Instance { label: &contest.instances[i].label, truth: contest.truth[i], runs: &runs };
-        findings.extend(instance.against_expected());
-        findings.extend(instance.disagreement());
+        findings.extend(instance.answers());
         findings.extend(instance.witnesses(Kind::WrongModel, is_wrong_model, Fault::Solver));
         findings.extend(instance.witnesses(Kind::RefutedStrategy, is_refuted_strategy, Fault::Ours));
     }
@@ -131,7 +132,19 @@ impl<'a> Instance<'a> {
         Finding { kind, fault, instance: self.label.to_owned(), truth: self.truth, claims }
     }
 
-    /// Answers other than the expected one. Who else is right is seen from the disagreement, if there is one.
+    /// What is wrong with the answers, once: where they contradict the known status and each other, the claims are those
+    /// of all.
+    fn answers(&self) -> Option<Finding> {
+        match (self.against_expected(), self.disagreement()) {
+            (Some(against), Some(other)) => {
+                let fault = against.fault.max(other.fault);
+                Some(Finding { fault, claims: other.claims, ..against })
+            }
+            (against, other) => against.or(other),
+        }
+    }
+
+    /// Answers other than the expected one.
     fn against_expected(&self) -> Option<Finding> {
         let against = |run: &&Run<'_>| {
             run.record
@@ -142,7 +155,13 @@ impl<'a> Instance<'a> {
         if wrong.is_empty() {
             return None;
         }
-        let mut finding = self.finding(Kind::Expected, self.fault(&wrong), claims(&wrong));
+        let several = wrong.iter().any(|run| run.record.solver != wrong[0].record.solver);
+        let unanimous = self.runs.iter().filter(|run| answer(run.record).is_some()).count() == wrong.len();
+        let fault = match self.fault(&wrong) {
+            Fault::Solver if several && unanimous => Fault::Status,
+            fault => fault,
+        };
+        let mut finding = self.finding(Kind::Expected, fault, claims(&wrong));
         finding.truth = wrong.iter().find_map(|run| run.record.expected);
         Some(finding)
     }
@@ -260,6 +279,7 @@ impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Fault::Solver => "a solver's fault",
+            Fault::Status => "but all agree: the status may be wrong",
             Fault::Ours => "a bug of hyperplan's until shown otherwise",
         })
     }

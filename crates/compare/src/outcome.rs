@@ -124,12 +124,16 @@ pub(crate) fn of_problem(measured: &Measured, over: bool) -> Outcome {
     }
 }
 
-/// What a solver said to a query. Of several checks the first counts whose answer contradicts what is known, else the
-/// first that is undecided, else the last.
+/// What a solver said to a query. What it complains of after its answer, such as a model that it cannot give, does not
+/// count; before it, the answer is to something else than was asked. Of several checks only an answer that contradicts
+/// what is known counts: one status cannot stand for all of them.
 pub(crate) fn of_query(measured: &Measured, query: &Query, over: bool) -> Outcome {
     let answers: Vec<Status> = measured.stdout.lines().filter_map(answer).collect();
-    let error = measured.stdout.lines().map(str::trim).find(|line| line.starts_with("(error"));
-    let expected = query.checks.last().copied().flatten();
+    let error = early_error(&measured.stdout, query.checks.len());
+    if query.checks.len() > 1 {
+        return of_several(&answers, query, error.is_some());
+    }
+    let expected = query.checks.first().copied().flatten();
     let trouble = |status, message: Option<String>| {
         let message = message.or_else(|| last_error(&measured.stderr)).or_else(|| silent(measured));
         Outcome { expected, ..Outcome::new(status, message.map(shortened)) }
@@ -138,7 +142,8 @@ pub(crate) fn of_query(measured: &Measured, query: &Query, over: bool) -> Outcom
         return Outcome { expected, ..Outcome::new(status, None) };
     }
     let all = format!("{}\n{}", error.unwrap_or_default(), measured.stderr).to_lowercase();
-    if answers.len() < query.checks.len() || query.checks.is_empty() {
+    let said = answers.first().copied().filter(|_| !query.checks.is_empty() && error.is_none());
+    let Some(status) = said else {
         let status = match () {
             () if answers.contains(&Status::Timeout) => Status::Timeout,
             () if ["out of memory", "bad_alloc", "memory exhausted"].iter().any(|w| all.contains(w)) => {
@@ -148,19 +153,38 @@ pub(crate) fn of_query(measured: &Measured, query: &Query, over: bool) -> Outcom
             () => Status::Error,
         };
         return trouble(status, error.map(str::to_owned));
-    }
+    };
     if measured.signal.is_some() {
         return trouble(Status::Error, None);
     }
-    let pairs = || answers.iter().copied().zip(query.checks.iter().copied());
-    let wrong = pairs().position(|(said, known)| known.is_some_and(|known| contradicts(said, known)));
-    let open = || answers.iter().position(|said| !matches!(said, Status::Sat | Status::Unsat));
-    let index = wrong.or_else(open).unwrap_or(query.checks.len() - 1);
-    let (status, expected) = pairs().nth(index).unwrap_or((Status::Error, expected));
-    let several = query.checks.len() > 1;
-    let message = (several && wrong.or_else(open).is_some())
-        .then(|| format!("check {} of {}", index + 1, query.checks.len()));
-    Outcome { expected, ..Outcome::new(status, message) }
+    Outcome { expected, ..Outcome::new(status, None) }
+}
+
+/// The first error before as many answers as there are checks.
+fn early_error(stdout: &str, checks: usize) -> Option<&str> {
+    let mut answers = 0;
+    let before = stdout.lines().take_while(|line| {
+        let early = answers < checks.max(1);
+        answers += usize::from(answer(line).is_some());
+        early
+    });
+    before.map(str::trim).find(|line| line.starts_with("(error"))
+}
+
+/// Several checks in one file are not supported, but what contradicts a known status is told of.
+fn of_several(answers: &[Status], query: &Query, failed: bool) -> Outcome {
+    let checks = query.checks.len();
+    let mut pairs = answers.iter().copied().zip(query.checks.iter().copied()).zip(1..);
+    let wrong = pairs.find(|((said, known), _)| known.is_some_and(|known| contradicts(*said, known)));
+    match wrong.filter(|_| !failed) {
+        Some(((status, expected), check)) => {
+            Outcome { expected, ..Outcome::new(status, Some(format!("check {check} of {checks}"))) }
+        }
+        None => Outcome::new(
+            Status::Unsupported,
+            Some(format!("{checks} checks in one file; only answers against a known status count")),
+        ),
+    }
 }
 
 fn contradicts(said: Status, known: Answer) -> bool {

@@ -94,6 +94,14 @@ pub struct Run {
     pub limit: Limit,
 }
 
+/// How many runs there would be, without making them.
+#[must_use]
+pub fn count(instances: &[Arc<Instance>], solvers: &[Arc<Candidate>], ways: &Ways) -> u64 {
+    let pairs = instances.iter().flat_map(|instance| solvers.iter().map(move |solver| (instance, solver)));
+    let each: usize = pairs.map(|(instance, solver)| encodings(instance, solver, ways).len()).sum();
+    (each as u64).saturating_mul(ways.seeds.len() as u64).saturating_mul(ways.repetitions.into())
+}
+
 /// All runs. Repetitions come last, so that what was done when a comparison is stopped covers as much as possible. The
 /// embedded engine gets no queries.
 #[must_use]
@@ -139,6 +147,9 @@ fn encodings(instance: &Instance, solver: &Candidate, ways: &Ways) -> Vec<(Optio
     }
 }
 
+/// How queries are given to solvers and their answers read; changes where the same output would come to something else.
+const READING: &str = "without status";
+
 impl Run {
     /// A digest of all that the outcome depends on.
     fn digest(&self) -> String {
@@ -152,7 +163,10 @@ impl Run {
                 (&standalone.program, standalone.arguments(file, query.incremental).0, standalone.seed(*seed))
             }
         });
-        let own = matches!(kind, Kind::Problem { .. }).then_some(env!("CARGO_PKG_VERSION"));
+        let own = match kind {
+            Kind::Problem { .. } => env!("CARGO_PKG_VERSION"),
+            Kind::Query(_) => READING,
+        };
         let input = (name, sha256, others, set);
         let solver = (solver, version, stamp, standalone, own);
         let way = (quantifiers, states, options, seed, repetition, limit);
@@ -227,6 +241,10 @@ mod tests {
         let instances = [instance("a.hp#sp", problem()), instance("b.hp#sp", problem())];
         let runs = plan(&instances, &[candidate("builtin"), candidate("other")], &ways());
         assert_eq!(runs.len(), 2 * 2 * (2 * 3) * 2 * 2);
+        assert_eq!(
+            count(&instances, &[candidate("builtin"), candidate("other")], &ways()),
+            runs.len() as u64
+        );
         let keys: BTreeSet<&str> = runs.iter().map(|run| run.key.as_str()).collect();
         assert_eq!(keys.len(), runs.len());
         assert_eq!(runs[0].label(), "a.hp#sp builtin keep/onehot");

@@ -14,7 +14,7 @@ use std::time::Duration;
 use crate::outcome::{self, Outcome};
 use crate::plan::{Kind, Run};
 use crate::query::Query;
-use crate::record::Record;
+use crate::record::{Record, Status};
 use crate::supervise::{Job, Measured};
 
 /// How often the flag of an interruption is looked at.
@@ -162,7 +162,13 @@ impl Lifelines {
 fn one(run: &Run, setting: &Setting, lifelines: &Lifelines) -> io::Result<Option<Record>> {
     let folders = Folders::new(run, setting)?;
     let measured = match &run.instance.kind {
-        Kind::Query(query) => measure(&query_job(run, query, &folders), setting, lifelines),
+        Kind::Query(query) => {
+            let scrubbed = folders.scrubbed(&run.instance.file)?;
+            let file = scrubbed.as_deref().unwrap_or(&run.instance.file);
+            let measured = measure(&query_job(run, query, file, &folders), setting, lifelines);
+            scrubbed.as_deref().map(fs::remove_file).transpose()?;
+            measured
+        }
         Kind::Problem { objective } => {
             measure(&problem_job(run, objective, setting, &folders), setting, lifelines)
         }
@@ -228,6 +234,17 @@ impl Folders {
         Ok(folders)
     }
 
+    /// A copy of a query that says nothing of its status; `None` where it says nothing anyway.
+    fn scrubbed(&self, file: &str) -> io::Result<Option<String>> {
+        // What cannot be read is told of by the run.
+        let bytes = fs::read(file).unwrap_or_default();
+        let Some(text) = Query::without_status(&bytes) else { return Ok(None) };
+        let copy =
+            Path::new(&self.full(&self.temporary)).join(Path::new(file).file_name().unwrap_or_default());
+        fs::write(&copy, text)?;
+        Ok(Some(copy.display().to_string()))
+    }
+
     fn full(&self, folder: &str) -> String {
         self.base.join(folder).display().to_string()
     }
@@ -286,8 +303,7 @@ fn problem_job(run: &Run, objective: &str, setting: &Setting, folders: &Folders)
     }
 }
 
-fn query_job(run: &Run, query: &Query, folders: &Folders) -> Job {
-    let file = &run.instance.file;
+fn query_job(run: &Run, query: &Query, file: &str, folders: &Folders) -> Job {
     let standalone = run.solver.standalone.as_ref();
     let (arguments, from_input) =
         standalone.map_or_else(Default::default, |standalone| standalone.arguments(file, query.incremental));
@@ -297,7 +313,7 @@ fn query_job(run: &Run, query: &Query, folders: &Folders) -> Job {
         arguments,
         temporary: folders.full(&folders.temporary),
         prefix: seed.unwrap_or_default(),
-        input: from_input.then(|| file.clone()),
+        input: from_input.then(|| file.to_owned()),
         limit: run.limit,
         grace_s: 0.0,
     }
@@ -306,15 +322,26 @@ fn query_job(run: &Run, query: &Query, folders: &Folders) -> Job {
 fn record(run: &Run, setting: &Setting, measured: &Measured, folders: &Folders) -> Record {
     let Run { instance, solver, limit, .. } = run;
     let past = |limit: Option<f64>, used: f64| limit.is_some_and(|limit| used > limit);
-    let over = past(limit.wall_s, measured.wall_s) || past(limit.cpu_s, measured.cpu_s);
+    let over = if past(limit.cpu_s, measured.cpu_s) {
+        Some("CPU time")
+    } else {
+        past(limit.wall_s, measured.wall_s).then_some("wall time")
+    };
     let kept = folders.largest();
     let query = match &instance.kind {
         Kind::Query(query) => Some((query.bytes, query)),
         Kind::Problem { .. } => kept.as_ref().map(|(bytes, query)| (*bytes, query)),
     };
     let outcome: Outcome = match &instance.kind {
-        Kind::Query(query) => outcome::of_query(measured, query, over),
-        Kind::Problem { .. } => outcome::of_problem(measured, over),
+        Kind::Query(query) => outcome::of_query(measured, query, over.is_some()),
+        Kind::Problem { .. } => outcome::of_problem(measured, over.is_some()),
+    };
+    let message = match (outcome.status, outcome.message) {
+        // Which time it was; the reason `timeout` says no more than the status.
+        (Status::Timeout, message) => {
+            message.filter(|reason| reason != "timeout").or(over.map(str::to_owned))
+        }
+        (_, message) => message,
     };
     let size = |of: fn(&Query) -> u64| query.map(|(_, query)| of(query));
     Record {
@@ -344,7 +371,7 @@ fn record(run: &Run, setting: &Setting, measured: &Measured, folders: &Folders) 
         variables: outcome.variables.or_else(|| size(|query| query.variables)),
         assertions: outcome.assertions.or_else(|| size(|query| query.assertions)),
         bytes: query.map(|(bytes, _)| bytes),
-        message: measured.failure.clone().or(outcome.message),
+        message: measured.failure.clone().or(message),
         queries: folders.queries.clone(),
         key: run.key.clone(),
         states_used: outcome.states,

@@ -50,6 +50,38 @@ impl Query {
         query
     }
 
+    /// The text with blanks in place of what it says of its status: some solvers check themselves by that, and one could
+    /// read the answer there. Lines and columns stay the same. `None` where it says nothing.
+    pub(crate) fn without_status(bytes: &[u8]) -> Option<Vec<u8>> {
+        // As long as the bytes, whatever they encode.
+        let text: String =
+            bytes.iter().map(|byte| if byte.is_ascii() { char::from(*byte) } else { 'x' }).collect();
+        let mut scrubbed = None;
+        let (mut depth, mut start, mut words) = (0_usize, 0, Vec::new());
+        let mut tokens = Tokens(&text);
+        while let Some(token) = tokens.next() {
+            let end = text.len() - tokens.0.len();
+            match token {
+                "(" => {
+                    depth += 1;
+                    if depth == 1 {
+                        (start, words) = (end - 1, Vec::new());
+                    }
+                }
+                ")" => {
+                    depth = depth.saturating_sub(1);
+                    if depth == 0 && words == ["set-info", ":status"] {
+                        let command = &mut scrubbed.get_or_insert_with(|| bytes.to_vec())[start..end];
+                        command.iter_mut().filter(|byte| **byte != b'\n').for_each(|byte| *byte = b' ');
+                    }
+                }
+                word if depth == 1 && words.len() < 2 => words.push(word),
+                _ => {}
+            }
+        }
+        scrubbed
+    }
+
     fn command(&mut self, words: &[&str], status: &mut Option<Answer>) {
         match words {
             ["set-logic", logic, ..] => self.logic = Some((*logic).to_owned()),
@@ -136,6 +168,19 @@ mod tests {
         let query = Query::scan(text);
         assert_eq!(query.checks, [None, Some(Answer::Sat), None]);
         assert!(query.incremental);
+    }
+
+    #[test]
+    fn a_status_is_taken_out() {
+        let scrub = |text: &[u8]| Query::without_status(text);
+        let text = b"(set-logic ALL) (set-info\n:status unsat) ; \xff(set-info :status sat)\n(echo \"(set-info :status)\")";
+        let expected =
+            b"(set-logic ALL)          \n               ; \xff(set-info :status sat)\n(echo \"(set-info :status)\")";
+        assert_eq!(scrub(text).expect("there is one"), expected);
+        assert_eq!(scrub(b"\xff(set-info :source |(set-info :status sat)|)(check-sat)"), None);
+        for text in ["", ")", "(set-info :status", "(set-info :status |", "((set-info :status sat))"] {
+            assert_eq!(scrub(text.as_bytes()), None, "{text}");
+        }
     }
 
     #[test]

@@ -59,10 +59,33 @@ pub fn write_all_from(records: &[Record], dir: &Path, log: &str) -> io::Result<V
     let mut written = Vec::new();
     for (name, contents) in files {
         let path = dir.join(name);
-        std::fs::write(&path, contents)?;
+        replace(&path, &contents)?;
         written.push(path);
     }
+    remove_stale(dir, &written)?;
     Ok(written)
+}
+
+/// Whoever reads the file gets the old one or the new one, whole.
+fn replace(path: &Path, contents: &[u8]) -> io::Result<()> {
+    let mut partial = path.as_os_str().to_owned();
+    partial.push(".partial");
+    std::fs::write(&partial, contents)?;
+    std::fs::rename(&partial, path)
+}
+
+/// Removes our scatter plots of an earlier report that was about others.
+fn remove_stale(dir: &Path, written: &[PathBuf]) -> io::Result<()> {
+    for entry in std::fs::read_dir(dir)? {
+        let path = entry?.path();
+        let name = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
+        let plot = name.strip_prefix("scatter-").and_then(|rest| rest.strip_suffix(".svg"));
+        // Ours are of two.
+        if plot.is_some_and(|names| names.contains('-')) && !written.contains(&path) {
+            std::fs::remove_file(path)?;
+        }
+    }
+    Ok(())
 }
 
 /// So many contestants have a plot with each other; the page has all.

@@ -95,6 +95,13 @@ pub struct Scores {
 }
 
 impl Scores {
+    /// Without contestants of which nothing counts, who would have a place before those that were wrong.
+    pub fn of_counted(mut self) -> Self {
+        self.scores.retain(|score| score.counted > 0);
+        rank(&mut self.scores);
+        self
+    }
+
     /// The contestants, best first: by SMT-COMP's parallel score, then in the contest's order.
     pub fn order(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.scores.len()).collect();

@@ -110,7 +110,8 @@ pub fn sheets(contest: &Contest<'_>) -> Vec<Sheet> {
     let families = families(contest);
     if families.len() > 1 {
         for family in families {
-            sheets.push(sheet(&scores(contest, |i| contest.instances[i].family == family), family));
+            let scores = scores(contest, |i| contest.instances[i].family == family);
+            sheets.push(sheet(&scores.of_counted(), family));
         }
     }
     sheets
@@ -240,7 +241,9 @@ fn markdown_text(text: &str) -> String {
 pub fn latex(sheet: &Sheet) -> String {
     let line = |cells: &[String]| {
         let cells: Vec<String> = cells.iter().map(|cell| latex_text(cell)).collect();
-        format!("  {} \\\\\n", cells.join(" & "))
+        // After the end of a line these would be an argument of it.
+        let apart = if cells.first().is_some_and(|cell| cell.starts_with(['[', '*'])) { "{}" } else { "" };
+        format!("  {apart}{} \\\\\n", cells.join(" & "))
     };
     let columns: String = sheet.text.iter().map(|text| if *text { 'l' } else { 'r' }).collect();
     let mut text =

@@ -97,7 +97,16 @@ fn against_the_known_status() {
     assert_eq!(kinds(&[known(said("z3", Status::Sat))]), [(Kind::Expected, Fault::Ours)]);
     assert_eq!(kinds(&[known(query("z3", Status::Sat))]), [(Kind::Expected, Fault::Solver)]);
     let both = [known(said("z3", Status::Sat)), known(said("cvc5", Status::Unsat))];
-    assert_eq!(kinds(&both), [(Kind::Expected, Fault::Solver), (Kind::Disagreement, Fault::Solver)]);
+    assert_eq!(kinds(&both), [(Kind::Expected, Fault::Solver)], "once");
+    assert_eq!(judge(&both).findings[0].claims.len(), 2);
+    // All that answered say otherwise.
+    let all = [known(query("z3", Status::Sat)), known(query("cvc5", Status::Sat))];
+    assert_eq!(kinds(&all), [(Kind::Expected, Fault::Status)]);
+    assert_eq!(judge(&all).exit_code(), 4);
+    let doubt = "against the known status, but all agree: the status may be wrong; known: unsat";
+    assert!(judge(&all).to_string().contains(doubt), "{}", judge(&all));
+    let yices = known(query("yices", Status::Unsat));
+    assert_eq!(kinds(&[&all[..], &[yices]].concat()), [(Kind::Expected, Fault::Solver)]);
 }
 
 #[test]
@@ -118,8 +127,6 @@ fn witnesses_that_fail() {
 fn what_is_printed() {
     let expected = "\
 specs/known.hp#k: against the known status, a bug of hyperplan's until shown otherwise; known: unsat
-  z3 keep says sat: said \"sat\", </script> and more
-specs/known.hp#k: solvers disagree, a bug of hyperplan's until shown otherwise; known: unsat
   z3 keep says sat: said \"sat\", </script> and more
   builtin auto says unsat
   cvc5 auto says unsat

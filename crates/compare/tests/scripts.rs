@@ -117,7 +117,7 @@ fn nightly() {
     assert_eq!(night("2026-01-01", &before, 0), ("nothing to compare with\n".to_owned(), Some(0)));
     assert_eq!(
         night("2026-01-02", &before, 0),
-        ("0 runs are worse than on 2026-01-01\n".to_owned(), Some(0))
+        ("0 of 4 runs are worse than on 2026-01-01; 0 are new, 0 gone\n".to_owned(), Some(0))
     );
     let after = [
         run("z3", "a", Status::Unsat, 1.0),
@@ -127,12 +127,47 @@ fn nightly() {
     ];
     let (text, status) = night("2026-01-03", &after, 0);
     let expected = "\
-2 runs are worse than on 2026-01-02
+2 of 3 runs are worse than on 2026-01-02; 1 are new, 1 gone
   a z3 auto onehot: sat, now unsat
   b z3 auto onehot: 1.000 s, now 3.500 s
 ";
     assert_eq!((text.as_str(), status), (expected, Some(1)));
-    assert_eq!(night("2026-01-04", &after, 5).1, Some(5));
+    let judgement = r#"{"judgement": {"findings": [{"instance": "a", "kind": "disagreement", "truth": "sat",
+        "claims": [{"who": "z3", "answer": "unsat", "message": null}, {"who": "cvc5", "answer": "sat"}]}]}}"#;
+    let folder = dir.path().join("out/2026-01-04");
+    fs::create_dir_all(&folder).expect("ours");
+    fs::write(folder.join("scores.json"), judgement).expect("ours");
+    let (text, status) = night("2026-01-04", &after, 5);
+    let wrong = "answers are wrong: hyperplan compare ends with 5\n  a: disagreement: z3 unsat; cvc5 sat (known: sat)\n";
+    assert!(text.starts_with(wrong) && text.contains("0 of 4 runs are worse"), "{text}");
+    assert_eq!(status, Some(5));
     // The same day again is not compared with itself.
     assert!(night("2026-01-02", &after, 0).0.contains("worse than on 2026-01-01"));
+}
+
+#[test]
+fn programs_that_are_missing_or_interrupted() {
+    if is_missing() {
+        return;
+    }
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    // Stands for Ctrl-C, which goes to everyone: here to the script, its parent.
+    let program = dir.path().join("hyperplan");
+    fs::write(&program, "#!/bin/sh\nsleep 0.5; kill -INT $PPID\necho 'interrupted: hint' >&2\nexit 130\n")
+        .expect("ours");
+    fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).expect("our own file");
+    let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts");
+    for name in ["table-1.py", "formula-16.py", "nightly.py"] {
+        let run = |program: &Path| {
+            let mut command = Command::new("python3");
+            command.arg("-B").arg(scripts.join(name)).arg("--hyperplan").arg(program);
+            let output = command.arg("--out").arg(dir.path().join("out")).output();
+            let output = output.expect("python was there just now");
+            (String::from_utf8_lossy(&output.stderr).into_owned(), output.status.code())
+        };
+        assert_eq!(run(&program), ("interrupted: hint\n".to_owned(), Some(130)), "{name}");
+        let (said, status) = run(&dir.path().join("nothing"));
+        assert!(said.starts_with("cannot run ") && said.contains("cargo build --release"), "{said}");
+        assert_eq!((said.lines().count(), status), (1, Some(1)), "{said}");
+    }
 }

@@ -5,7 +5,9 @@ mod sample;
 use std::path::Path;
 use std::{env, fs};
 
+use hyperplan_compare::contest::Contest;
 use hyperplan_compare::report::write_all;
+use hyperplan_compare::table::{Sheet, latex, sheets};
 use hyperplan_compare::{Record, Status, summary};
 use sample::{run, sample};
 
@@ -50,4 +52,46 @@ fn odd_ones() {
         write_all(records, dir.path()).expect("a folder that can be written");
         assert!(!summary(records).is_empty());
     }
+}
+
+/// Contestants that count on nothing have no place in a family, nor do they push others back.
+#[test]
+fn families_without_what_does_not_count() {
+    let mut wrong = run("z3", "a/x", Status::Unsat, 1.0);
+    wrong.family = "a".to_owned();
+    wrong.expected = Some(hyperplan_compare::Answer::Sat);
+    let other = |solver: &str, status| Record { family: "b".to_owned(), ..run(solver, "b/x", status, 1.0) };
+    let absent = Record { family: "a".to_owned(), ..run("builtin", "a/x", Status::Unsupported, 0.0) };
+    let records = [wrong, absent, other("z3", Status::Sat), other("builtin", Status::Sat)];
+    let sheets = sheets(&Contest::new(&records));
+    let places = |i: usize| -> Vec<String> {
+        sheets[i].rows.iter().map(|row| format!("{} {}", row[0], row[1])).collect()
+    };
+    assert_eq!((sheets[1].caption.as_str(), places(1)), ("a", vec!["1 z3".to_owned()]));
+    assert_eq!(places(2), ["1 builtin", "1 z3", " virtual best"]);
+}
+
+#[test]
+fn brackets_are_no_argument_of_a_line_end() {
+    let row = |name: &str| vec![name.to_owned(), "1".to_owned()];
+    let head = row("instance");
+    let sheet = Sheet { head, text: vec![true, false], rows: vec![row("[a]"), row("*")], ..Sheet::default() };
+    let text = latex(&sheet);
+    assert!(text.contains("  {}[a] & 1 \\\\\n  {}* & 1 \\\\\n"), "{text}");
+}
+
+#[test]
+fn plots_of_an_earlier_report_go() {
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    let names = || -> Vec<String> {
+        let entries = fs::read_dir(dir.path()).expect("ours").flatten();
+        let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+        names.filter(|name| name.starts_with("scatter") || name.ends_with(".partial")).collect()
+    };
+    fs::write(dir.path().join("scatter.svg"), "somebody's").expect("ours");
+    let of = ["z3", "cvc5"].map(|solver| run(solver, "a", Status::Sat, 1.0));
+    write_all(&of, dir.path()).expect("a folder that can be written");
+    assert_eq!(names().len(), 2);
+    write_all(&of[..1], dir.path()).expect("a folder that can be written");
+    assert_eq!(names(), ["scatter.svg"]);
 }

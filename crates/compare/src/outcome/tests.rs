@@ -79,17 +79,32 @@ fn answers_to_queries() {
         let outcome = of_query(&ended(0, stdout, ""), &query(checks), false);
         (outcome.status, outcome.expected, outcome.message)
     };
-    let (sat, unsat) = (Some(Answer::Sat), Some(Answer::Unsat));
+    let sat = Some(Answer::Sat);
     assert_eq!(of("sat\n((define-fun x () Bool\n true))\n", &[None]), (Status::Sat, None, None));
     assert_eq!(of("success\n unsat \r\n", &[sat]), (Status::Unsat, sat, None));
     assert_eq!(of("unknown\n", &[sat]), (Status::Unknown, sat, None));
     assert_eq!(of("timeout\n", &[sat]), (Status::Timeout, sat, None));
-    assert_eq!(of("sat\nunsat\n", &[sat, unsat]), (Status::Unsat, unsat, None));
-    let first = Some("check 1 of 2".to_owned());
-    assert_eq!(of("sat\nunsat\n", &[unsat, unsat]), (Status::Sat, unsat, first.clone()));
-    assert_eq!(of("unknown\nunsat\n", &[None, unsat]), (Status::Unknown, None, first));
     assert_eq!(of("unsat\n(error \"no model\")\n", &[None]).0, Status::Unsat);
-    assert_eq!(of("sat\n", &[None, None]).0, Status::Error);
+    // What is answered after a complaint is not the query.
+    let complaint = "(error \"line 2: unknown constant y\")";
+    assert_eq!(of(&format!("{complaint}\nsat\n"), &[sat]), (Status::Error, sat, Some(complaint.to_owned())));
+    assert_eq!(of("(error \"logic not supported\")\nunknown\n", &[None]).0, Status::Unsupported);
+}
+
+/// Of several answers none stands for all, but a wrong one is wrong.
+#[test]
+fn several_checks() {
+    let of = |stdout: &str, checks: &[Option<Answer>]| {
+        let outcome = of_query(&ended(0, stdout, ""), &query(checks), false);
+        (outcome.status, outcome.expected, outcome.message.expect("it says why"))
+    };
+    let (sat, unsat) = (Some(Answer::Sat), Some(Answer::Unsat));
+    let why = "2 checks in one file; only answers against a known status count".to_owned();
+    assert_eq!(of("sat\nunsat\n", &[sat, unsat]), (Status::Unsupported, None, why.clone()));
+    assert_eq!(of("sat\n", &[None, None]), (Status::Unsupported, None, why.clone()));
+    assert_eq!(of("sat\nunsat\n", &[unsat, unsat]), (Status::Sat, unsat, "check 1 of 2".to_owned()));
+    assert_eq!(of("sat\nsat\n", &[None, unsat]), (Status::Sat, unsat, "check 2 of 2".to_owned()));
+    assert_eq!(of("(error \"x\")\nsat\nsat\n", &[None, unsat]), (Status::Unsupported, None, why));
 }
 
 #[test]

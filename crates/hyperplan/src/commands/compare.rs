@@ -9,7 +9,7 @@ use crate::progress::Progress;
 use crate::signals;
 use clap::ValueEnum;
 use hyperplan_compare::benchexec::{Configuration, Problem};
-use hyperplan_compare::plan::{Candidate, Instance, Kind, Run, Ways, plan};
+use hyperplan_compare::plan::{Candidate, Instance, Kind, Run, Ways, count, plan};
 use hyperplan_compare::report::write_all;
 use hyperplan_compare::{
     Event, Limit, Log, LogError, Past, Record, Setting, judge, prepare, run_all, summary,
@@ -22,6 +22,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 const LOG: &str = "runs.jsonl";
+/// More runs than this are hardly meant.
+const MOST_RUNS: u64 = 1_000_000;
 
 pub(crate) fn run(args: &args::Compare, quiet: bool, out: &mut Output) -> Outcome {
     if args.files.is_empty() {
@@ -31,7 +33,13 @@ pub(crate) fn run(args: &args::Compare, quiet: bool, out: &mut Output) -> Outcom
     let solvers = candidates(args.solver.as_deref())?;
     let instances = instances(args, out)?;
     if let Some(folder) = &args.benchexec {
-        return benchexec(folder, &instances, &solvers, &ways);
+        return benchexec(folder, &instances, &solvers, &ways, out);
+    }
+    let number = count(&instances, &solvers, &ways);
+    if number > MOST_RUNS {
+        return Err(Failure::input(format_args!(
+            "these would be {number} runs, of at most {MOST_RUNS}; take fewer of --repeat, --seed, files or encodings"
+        )));
     }
     let runs = plan(&instances, &solvers, &ways);
     if runs.is_empty() {
@@ -158,7 +166,13 @@ fn report(records: &[Record], folder: &Path, out: &mut Output) -> Outcome {
 }
 
 /// Writes the same comparison for BenchExec, and runs nothing.
-fn benchexec(folder: &Path, instances: &[Arc<Instance>], solvers: &[Arc<Candidate>], ways: &Ways) -> Outcome {
+fn benchexec(
+    folder: &Path,
+    instances: &[Arc<Instance>],
+    solvers: &[Arc<Candidate>],
+    ways: &Ways,
+    out: &mut Output,
+) -> Outcome {
     let problems: Vec<Problem> = instances
         .iter()
         .filter_map(|instance| match &instance.kind {
@@ -171,6 +185,13 @@ fn benchexec(folder: &Path, instances: &[Arc<Instance>], solvers: &[Arc<Candidat
             }),
         })
         .collect();
+    let left_out = counted(instances.len() - problems.len(), "SMT-LIB file");
+    if problems.is_empty() {
+        return Err(Failure::input(format_args!("nothing is left for BenchExec without {left_out}")));
+    }
+    if problems.len() < instances.len() {
+        out.remark(format_args!("note: {left_out} left out: solvers run these there without hyperplan"));
+    }
     let option = |name: &str, value: &str| (name.to_owned(), value.to_owned());
     let mut configurations = Vec::new();
     for solver in solvers {
@@ -193,7 +214,17 @@ fn benchexec(folder: &Path, instances: &[Arc<Instance>], solvers: &[Arc<Candidat
     }
     hyperplan_compare::benchexec::write(folder, &problems, &configurations, &ways.limit)
         .map_err(|error| Failure::input(format_args!("cannot write {}: {error}", folder.display())))?;
+    let dir = folder.display();
+    out.remark(format_args!(
+        "note: {} and {} in {dir}; to run them: cd {dir} && PYTHONPATH=. benchexec hyperplan.xml",
+        counted(problems.len(), "task"),
+        counted(configurations.len(), "run definition")
+    ));
     Ok(Status::Good)
+}
+
+fn counted(number: usize, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }
 
 /// Does the job on standard input, for [`run`].
