@@ -239,6 +239,11 @@ fn requests_that_cannot_be_met() {
         "1 of 2 files cannot be used; nothing was run",
     );
     refused(&["rooms.hp", "--objective=sp,nobody", &solver], 2, "no file has an objective `nobody`");
+    refused(
+        &[text(&files), &solver, "--repeat=4000000000"],
+        2,
+        "these would be 4000000000 runs, of at most 1000000",
+    );
     refused(&[text(&files), &solver, "--timeout=0"], 2, "--timeout 0 is not a time to work in");
     refused(&["rooms.hp", &solver, "--set=T=3..1"], 2, "the range 3..1 is empty");
     let empty = files.join("empty.smt2");
@@ -269,4 +274,34 @@ fn the_same_for_benchexec() {
     );
     assert_eq!(fs::read_dir(folder.join("tasks")).expect("it is there").count(), 5);
     assert!(!comparison.out().exists());
+    assert!(run.stderr.contains("note: 5 tasks and 2 run definitions in "), "{}", run.stderr);
+    assert!(run.stderr.contains("PYTHONPATH=. benchexec hyperplan.xml"), "{}", run.stderr);
+    // Queries are none of it.
+    let files = comparison.queries(1);
+    let run = comparison.run(&["rooms.hp", text(&files), "--solver=builtin", &option]);
+    assert!(run.status == 0 && run.stderr.contains("note: 1 SMT-LIB file left out"), "{}", run.stderr);
+    let run = comparison.run(&[text(&files), "--solver=builtin", &option]);
+    assert!(run.status == 2 && run.stderr.contains("without 1 SMT-LIB file"), "{}", run.stderr);
+}
+
+/// Neither in a file nor on standard input.
+#[test]
+fn solvers_do_not_see_the_status() {
+    let comparison = Comparison::new();
+    let files = comparison.queries(0);
+    let query = "(declare-const x Bool)\n(set-info :status unsat)\n(assert x)\n(check-sat)\n";
+    fs::write(files.join("a.smt2"), query).expect("ours");
+    let fake = Fake::new("case \"$(cat $1)\" in *status*) echo unsat;; *assert*) echo sat;; esac");
+    for solver in ["", " {file}"] {
+        let run = comparison.run(&[text(&files), &format!("--solver={}{solver}", fake.program().display())]);
+        assert_eq!(run.status, 4, "{}{}", run.stdout, run.stderr);
+    }
+    assert!(!comparison.out().join("evidence").exists());
+    assert!(fs::read_to_string(files.join("a.smt2")).is_ok_and(|text| text == query));
+    // An answer after a complaint is none.
+    let fake = Fake::new("cat > /dev/null; echo '(error \"line 1\")'; echo sat");
+    let run = comparison.run(&[text(&files), &format!("--solver='{}'", fake.program().display())]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    let record = comparison.records().pop().expect("it is the last");
+    assert_eq!((&record["status"], &record["message"]), (&"error".into(), &"(error \"line 1\")".into()));
 }

@@ -40,7 +40,7 @@ fn wall_time() {
     let fake =
         Fake::new("trap '' TERM INT HUP\nsetsid sh -c 'sleep 300' & note $!\nsleep 300 & note $!\nwait");
     let record = one(&fake, &["--timeout=0.5"]);
-    assert_eq!(record["status"], "timeout", "{record}");
+    assert_eq!((&record["status"], &record["message"]), (&"timeout".into(), &"wall time".into()), "{record}");
     assert!(number(&record, "wall_s") >= 0.5, "{record}");
     // An answer that comes too late is none.
     let late = Fake::new("echo sat; exec sleep 300");
@@ -53,7 +53,7 @@ fn cpu_time_of_everything() {
     let fake =
         Fake::new(&format!("sh -c '{spin}' & note $!\nsetsid sh -c '{spin}' & note $!\nexec sleep 300"));
     let record = one(&fake, &["--timeout=50", "--cpu=1"]);
-    assert_eq!(record["status"], "timeout", "{record}");
+    assert_eq!((&record["status"], &record["message"]), (&"timeout".into(), &"CPU time".into()), "{record}");
     assert!(number(&record, "cpu_s") >= 1.0 && number(&record, "wall_s") < 50.0, "{record}");
 }
 
