@@ -7,6 +7,7 @@
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use crate::record::Record;
 
@@ -47,6 +48,18 @@ pub struct Past {
     pub notes: Vec<String>,
 }
 
+/// Locks the file. A process that is just being started by us has its descriptors for a moment, and with them an older
+/// lock: a short wait tells that from another comparison.
+fn lock(file: &File) -> Result<(), TryLockError> {
+    for _ in 0..20 {
+        match file.try_lock() {
+            Err(TryLockError::WouldBlock) => std::thread::sleep(Duration::from_millis(10)),
+            other => return other,
+        }
+    }
+    file.try_lock()
+}
+
 impl Log {
     /// Opens the log, which is made if there is none, and reads what is in it.
     ///
@@ -56,7 +69,7 @@ impl Log {
         let failed = |what| move |source| LogError::Io { what, path: path.to_owned(), source };
         let options = OpenOptions::new().read(true).append(true).create(true).open(path);
         let mut file = options.map_err(failed("write"))?;
-        match file.try_lock() {
+        match lock(&file) {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => return Err(LogError::InUse { path: path.to_owned() }),
             // A file system without locks: nothing can be known of others.
