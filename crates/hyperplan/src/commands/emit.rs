@@ -173,8 +173,8 @@ impl Target {
     }
 }
 
-/// The most bytes that SMT-LIB takes.
-const LARGEST: u64 = 50_000_000;
+/// The most bytes of a file that SMT-LIB takes.
+pub(super) const LARGEST: u64 = 50_000_000;
 
 /// Writes a file as a whole or not at all; what is no file, such as a device, as it comes.
 fn write_to(path: &Path, emitted: &mut Emitted, out: &Output) -> Outcome<()> {

@@ -1,5 +1,6 @@
 //! One objective on one map: its least horizon, and its benchmarks.
 
+use super::emit::LARGEST;
 use super::{Note, Work};
 use crate::failure::{self, Failure, Outcome};
 use crate::store::write_whole;
@@ -15,9 +16,6 @@ use hyperplan_syntax::SourceMap;
 use std::collections::BTreeSet;
 use std::io::{self, Write};
 use std::sync::mpsc::SyncSender;
-
-/// The most bytes that a benchmark may have.
-const MOST_BYTES: usize = 50_000_000;
 
 /// One case, and where to say what comes of it.
 pub(super) struct One<'a> {
@@ -225,7 +223,7 @@ impl One<'_> {
         }
         let mut text = Bounded::default();
         if emitted.write(&mut text).is_err() {
-            return self.dropped(&about.instance, &format!("has more than {} MB", MOST_BYTES / 1_000_000));
+            return self.dropped(&about.instance, &format!("has more than {} MB", LARGEST / 1_000_000));
         }
         let (text, logic) = (text.0, emitted.logic);
         let path = self.work.layout.benchmark(self.folder(), &logic, &self.case, &about.instance);
@@ -280,7 +278,7 @@ struct Bounded(Vec<u8>);
 
 impl Write for Bounded {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if self.0.len() + bytes.len() > MOST_BYTES {
+        if (self.0.len() + bytes.len()) as u64 > LARGEST {
             return Err(io::Error::other("too long"));
         }
         self.0.extend_from_slice(bytes);
