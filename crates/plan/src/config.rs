@@ -2,7 +2,7 @@
 
 use hyperplan_encode::{self as encode, Limits};
 use hyperplan_problem::{PathId, Strategy};
-use hyperplan_solver::{self as solver, Deadline, Identity, Size, Spec};
+use hyperplan_solver::{self as solver, Deadline, Identity, Spec, Told};
 use std::fmt;
 use std::path::PathBuf;
 use typed_index_collections::TiVec;
@@ -188,7 +188,7 @@ pub struct Outcome {
     /// Rounds: checks of the outermost query.
     pub iterations: u32,
     /// The largest query, as the solver got it.
-    pub size: Size,
+    pub told: Told,
     /// Where the time went.
     pub seconds: Seconds,
     /// What the user should know besides.

@@ -18,7 +18,7 @@ use crate::lasting::{conjuncts, lasting};
 use crate::solve::{SLACKS, solve_sharing};
 use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Narrowing, Query};
 use hyperplan_problem::{FormulaId, Node, Objective, Problem, Quantifier};
-use hyperplan_solver::Size;
+use hyperplan_solver::Told;
 use std::ops::RangeInclusive;
 use std::time::Instant;
 
@@ -83,7 +83,7 @@ pub fn minimize<E>(
         high,
         seconds: Seconds::default(),
         rounds: 0,
-        largest: Size::default(),
+        largest: Told::default(),
     };
     search.refute()?;
     search.run()
@@ -116,7 +116,7 @@ struct Search<'a, E> {
     high: i64,
     seconds: Seconds,
     rounds: u32,
-    largest: Size,
+    largest: Told,
 }
 
 /// An answer for a value.
@@ -264,7 +264,7 @@ impl<E> Search<'_, E> {
         self.seconds.solve += outcome.seconds.solve;
         self.seconds.verify += outcome.seconds.verify;
         self.rounds += outcome.iterations;
-        self.largest = self.largest.max(outcome.size);
+        self.largest = std::mem::take(&mut self.largest).max(outcome.told.clone());
         Ok(Solved { value, problem, outcome })
     }
 
@@ -272,7 +272,7 @@ impl<E> Search<'_, E> {
         let Solved { value, problem, mut outcome } = solved;
         outcome.seconds = self.seconds;
         outcome.iterations = self.rounds;
-        outcome.size = self.largest;
+        outcome.told = self.largest;
         Least { value, problem, outcome, proved: self.low, undecided }
     }
 }

@@ -4,7 +4,7 @@ use crate::config::{Config, Error};
 use crate::emit::Tape;
 use crate::evidence::{Claim, Evidence};
 use hyperplan_smt::{Model, Script, Term, check_model};
-use hyperplan_solver::{self as solver, Answer, Identity, Options, Session, Size, Spec, open};
+use hyperplan_solver::{self as solver, Answer, Identity, Options, Session, Spec, Told, open};
 use std::time::Instant;
 
 /// Why a search ended without an answer.
@@ -33,7 +33,7 @@ pub(crate) struct Oracle<'c> {
     /// Time spent waiting for solvers.
     pub(crate) solving: f64,
     /// The largest query.
-    pub(crate) largest: Size,
+    pub(crate) largest: Told,
     /// Where what is said is kept, for a benchmark.
     pub(crate) tape: Option<Tape>,
 }
@@ -46,7 +46,7 @@ impl<'c> Oracle<'c> {
             unproved: None,
             notes: Vec::new(),
             solving: 0.0,
-            largest: Size::default(),
+            largest: Told::default(),
             tape: None,
         }
     }
@@ -86,7 +86,7 @@ impl<'c> Oracle<'c> {
         let start = Instant::now();
         let answer = dialogue.session.check(script, &[], &self.config.deadline);
         self.solving += start.elapsed().as_secs_f64();
-        self.largest = self.largest.max(dialogue.session.size());
+        self.largest = std::mem::take(&mut self.largest).max(dialogue.session.told());
         let answer = answer?;
         if answer != Answer::Sat {
             self.introduce(dialogue);

@@ -8,7 +8,7 @@ use crate::prepare::{blocks, decided, no_dead_ends, without_paths};
 use crate::race::race;
 use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Narrowing};
 use hyperplan_problem::{Objective, PathId, Problem, Quantifier, Strategy};
-use hyperplan_solver::{Size, Spec};
+use hyperplan_solver::{Spec, Told};
 use hyperplan_verify as verify;
 use std::time::Instant;
 
@@ -87,7 +87,7 @@ fn attempt(
         Seconds { encode: (total - oracle.solving).max(0.0), solve: oracle.solving, verify: 0.0 };
     outcome.solver = oracle.identity();
     outcome.notes.append(&mut oracle.notes);
-    outcome.size = oracle.largest;
+    outcome.told = oracle.largest.clone();
     match answer {
         Err(Stop::Error(Error::Encode(encode::Error::Interrupted))) => {
             outcome.reason = Some(config.deadline.reason().to_owned());
@@ -139,7 +139,7 @@ fn unknown(objective: &Objective, encoder: &Encoder<'_>, config: &Config) -> Out
             .then_some("there is one block of quantifiers, so one query decides"),
         states: States::from(encoder.states),
         iterations: 0,
-        size: Size::default(),
+        told: Told::default(),
         seconds: Seconds::default(),
         notes: Vec::new(),
     }

@@ -39,6 +39,9 @@ pub struct Answer {
     pub quantifiers: String,
     /// How states were represented: `onehot` or `bitvec`.
     pub states: String,
+    /// The logic of the largest query; none of the builtin solver, which gets no text.
+    #[serde(default)]
+    pub logic: Option<String>,
     /// Rounds of the counterexample loop; 1 for a single query.
     pub iterations: u32,
     /// The largest query; nothing if no solver was asked.
@@ -115,6 +118,9 @@ pub struct Size {
     pub variables: usize,
     /// Clauses of the builtin solver; of others, assertions.
     pub clauses: usize,
+    /// Bytes of SMT-LIB; none of the builtin solver, which gets no text.
+    #[serde(default)]
+    pub bytes: Option<usize>,
 }
 
 /// Wall time in seconds.

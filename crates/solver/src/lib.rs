@@ -23,4 +23,4 @@ pub use external::{
     Catalog, ConfigError, Facts, Found, Install, PrintedModel, PrintedModelError, Profile, Standalone,
     discover, end_with_parent,
 };
-pub use session::{Answer, Identity, Options, Session, Size, Spec, open};
+pub use session::{Answer, Identity, Options, Session, Spec, Told, open};

@@ -31,13 +31,17 @@ pub struct Identity {
     pub version: String,
 }
 
-/// How much a solver was told.
-#[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug, Default)]
-pub struct Size {
+/// What a solver was told, and how much; ordered by that.
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug, Default)]
+pub struct Told {
     /// Assertions; of the embedded engine, the clauses that they became.
     pub clauses: usize,
     /// Declared symbols; of the embedded engine, the SAT variables.
     pub variables: usize,
+    /// Bytes of SMT-LIB, without what asks for values; 0 of the embedded engine, which gets none.
+    pub bytes: usize,
+    /// The logic that was set; none of the embedded engine.
+    pub logic: Option<String>,
 }
 
 /// A dialogue with a solver about one growing script.
@@ -59,8 +63,8 @@ pub trait Session {
     /// Who answers.
     fn identity(&self) -> Identity;
 
-    /// How much it was told up to the last check.
-    fn size(&self) -> Size;
+    /// What it was told up to the last check.
+    fn told(&self) -> Told;
 }
 
 /// Which solver to use.

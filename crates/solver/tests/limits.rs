@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use common::installed;
 use hyperplan_smt::{Script, Sort, Term, Terms};
-use hyperplan_solver::{Answer, Deadline, Error, Options, Size, Spec, open};
+use hyperplan_solver::{Answer, Deadline, Error, Options, Spec, open};
 
 fn booleans(terms: &mut Terms, count: u32) -> Vec<Term> {
     let stem = terms.stem("x");
@@ -207,12 +207,17 @@ fn a_session_knows_how_much_it_was_told() {
         for pair in xs[..4].chunks(2) {
             script.clause(pair);
             session.check(&script, &[], &Deadline::never()).expect("an answer");
-            told.push(session.size());
+            told.push(session.told());
         }
         // The engine has a variable and a clause of its own, for what is true.
         let own = usize::from(spec == Spec::Builtin);
         let expected = [(1, 2), (2, 4)];
-        let expected = expected.map(|(c, v)| Size { clauses: c + own, variables: v + own });
-        assert_eq!(told, expected, "{spec:?}");
+        let sizes: Vec<_> = told.iter().map(|told| (told.clauses, told.variables)).collect();
+        assert_eq!(sizes, expected.map(|(c, v)| (c + own, v + own)), "{spec:?}");
+        for told in &told {
+            let is_text = spec != Spec::Builtin;
+            assert_eq!((told.bytes > 0, told.logic.is_some()), (is_text, is_text), "{spec:?}");
+        }
+        assert!(spec == Spec::Builtin || told[0].bytes < told[1].bytes, "{spec:?}");
     }
 }

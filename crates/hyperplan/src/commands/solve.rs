@@ -139,8 +139,13 @@ fn answer(
         solver: Solver { name: outcome.solver.name.clone(), version: outcome.solver.version.clone() },
         quantifiers: outcome.quantifiers.to_string(),
         states: outcome.states.to_string(),
+        logic: outcome.told.logic.clone(),
         iterations: outcome.iterations,
-        size: Size { variables: outcome.size.variables, clauses: outcome.size.clauses },
+        size: Size {
+            variables: outcome.told.variables,
+            clauses: outcome.told.clauses,
+            bytes: Some(outcome.told.bytes).filter(|bytes| *bytes > 0),
+        },
         seconds: Seconds {
             read: rounded(loaded.time.as_secs_f64()),
             encode: rounded(outcome.seconds.encode),
@@ -263,10 +268,12 @@ impl<'a> Found<'a> {
                 text.push_str(&format!("quantifiers {quantifiers}: {because}\n"));
             }
             let Seconds { read, encode, solve, verify, .. } = seconds;
-            let Size { variables, clauses } = size;
+            let Size { variables, clauses, bytes } = size;
+            let text_size = bytes.map_or_else(String::new, |bytes| format!(", {bytes} bytes"));
+            let logic = self.answer.logic.as_ref().map_or_else(String::new, |logic| format!(", {logic}"));
             text.push_str(&format!(
                 "read {read:.3} s, encode {encode:.3} s, solve {solve:.3} s, verify {verify:.3} s\n\
-                 largest query: {variables} variables, {clauses} clauses\n"
+                 largest query: {variables} variables, {clauses} clauses{text_size}{logic}\n"
             ));
         }
         text

@@ -11,7 +11,7 @@ use super::profile::{Assumptions, Profile};
 use super::program::Program;
 use crate::deadline::Deadline;
 use crate::error::Error;
-use crate::session::{Answer, Identity, Options, Quantifiers, Session, Size};
+use crate::session::{Answer, Identity, Options, Quantifiers, Session, Told};
 
 /// How much text is gathered before it is sent.
 const PIECE: usize = 1 << 16;
@@ -34,13 +34,20 @@ fn session(program: Program, options: &Options) -> Box<dyn Session> {
     }
     let options = options.clone();
     let deadline = Deadline::never();
-    Box::new(Dialogue { program, options, running: None, deadline, has_model: false, told: Size::default() })
+    Box::new(Dialogue { program, options, running: None, deadline, has_model: false, told: Told::default() })
 }
 
 impl Program {
-    /// What is said first. The logic is chosen by what is known now, and where more may follow, it
-    /// leaves room.
-    pub(super) fn preamble(&self, features: Features, options: &Options) -> Result<String, Error> {
+    /// The logic is chosen by what is known now, and where more may follow, it leaves room.
+    pub(super) fn logic(&self, features: Features, options: &Options) -> Result<String, Error> {
+        let quantifiers = features.quantifiers || options.quantifiers() > Quantifiers::None;
+        let known = self.profile.as_deref().map(Facts::of_profile);
+        let facts = known.unwrap_or_else(|| Facts::unknown(self.name.clone()));
+        facts.logic(&Features { quantifiers, ..features })
+    }
+
+    /// What is said first.
+    pub(super) fn preamble(&self, logic: &str, options: &Options) -> String {
         let profile = self.profile.as_deref();
         let mut text = String::new();
         for command in self.setup() {
@@ -51,10 +58,8 @@ impl Program {
         if let Some(option) = seed {
             text += &format!("(set-option {option} {})\n", options.seed % (1 << 31));
         }
-        let quantifiers = features.quantifiers || options.quantifiers() > Quantifiers::None;
-        let facts = profile.map_or_else(|| Facts::unknown(self.name.clone()), Facts::of_profile);
-        text += &format!("(set-logic {})\n", facts.logic(&Features { quantifiers, ..features })?);
-        Ok(text)
+        text += &format!("(set-logic {logic})\n");
+        text
     }
 }
 
@@ -66,15 +71,19 @@ struct Dialogue {
     running: Option<Running>,
     deadline: Deadline,
     has_model: bool,
-    told: Size,
+    told: Told,
 }
 
 /// What belongs to one process.
 struct Running {
     exchange: Exchange,
     printer: Printer,
+    /// The logic that was set.
+    logic: Option<String>,
     /// How many assertions it has been told.
     fed: usize,
+    /// How many bytes.
+    bytes: usize,
     checks: usize,
     /// Whether the last check's assumptions are to be popped.
     pushed: bool,
@@ -83,7 +92,8 @@ struct Running {
 impl Dialogue {
     fn start(&self) -> Result<Running, Error> {
         let exchange = Exchange::start(&self.program, &self.program.arguments, &self.options)?;
-        Ok(Running { exchange, printer: Printer::new(), fed: 0, checks: 0, pushed: false })
+        let printer = Printer::new();
+        Ok(Running { exchange, printer, logic: None, fed: 0, bytes: 0, checks: 0, pushed: false })
     }
 
     /// Sends what the process does not know yet, and the check.
@@ -99,8 +109,9 @@ impl Dialogue {
         running.printer.scan(terms, assumptions);
         let mut text = Vec::with_capacity(2 * PIECE);
         if running.checks == 0 {
-            let preamble = self.program.preamble(running.printer.features().beside(terms), &self.options)?;
-            text.extend_from_slice(preamble.as_bytes());
+            let logic = self.program.logic(running.printer.features().beside(terms), &self.options)?;
+            text.extend_from_slice(self.program.preamble(&logic, &self.options).as_bytes());
+            running.logic = Some(logic);
         } else {
             running.exchange.demand_silence()?;
         }
@@ -115,6 +126,7 @@ impl Dialogue {
             running.fed += 1;
             if text.len() > PIECE {
                 let piece = std::mem::replace(&mut text, Vec::with_capacity(2 * PIECE));
+                running.bytes += piece.len();
                 running.exchange.send(piece, deadline);
                 if deadline.passed() || running.exchange.must_stop() {
                     return Ok(());
@@ -126,6 +138,7 @@ impl Dialogue {
             // What it says from now on may be the answer.
             running.exchange.refuse_answers()?;
         }
+        running.bytes += text.len();
         running.exchange.send(text, deadline);
         Ok(())
     }
@@ -235,7 +248,8 @@ impl Dialogue {
         deadline: &Deadline,
     ) -> Result<Answer, Error> {
         self.feed(&mut running, script, assumptions, deadline)?;
-        self.told = Size { clauses: running.fed, variables: running.printer.declared() };
+        let (clauses, variables) = (running.fed, running.printer.declared());
+        self.told = Told { clauses, variables, bytes: running.bytes, logic: running.logic.clone() };
         // On an error or at the deadline the process is dropped, which kills it.
         let answer = match running.exchange.answer(deadline)? {
             None => return Ok(Answer::Unknown(deadline.reason().to_owned())),
@@ -297,8 +311,8 @@ impl Session for Dialogue {
         Identity { name: self.program.name.clone(), version: self.program.version.get() }
     }
 
-    fn size(&self) -> Size {
-        self.told
+    fn told(&self) -> Told {
+        self.told.clone()
     }
 }
 

@@ -13,7 +13,7 @@ use super::program::Program;
 use super::watchdog;
 use crate::deadline::Deadline;
 use crate::error::Error;
-use crate::session::{Answer, Identity, Options, Session, Size};
+use crate::session::{Answer, Identity, Options, Session, Told};
 
 /// Writes each query into a temporary file, with the questions for all values after the check, since there is no
 /// asking later. What a solver says to these after `unsat` does not matter.
@@ -21,17 +21,16 @@ pub(super) struct OneShot {
     program: Program,
     options: Options,
     model: Option<BTreeMap<Term, Value>>,
-    told: Size,
+    told: Told,
 }
 
 impl OneShot {
     pub(super) fn new(program: Program, options: &Options) -> OneShot {
-        OneShot { program, options: options.clone(), model: None, told: Size::default() }
+        OneShot { program, options: options.clone(), model: None, told: Told::default() }
     }
 
     fn run(&mut self, script: &Script, assumptions: &[Term], deadline: &Deadline) -> Result<Answer, Error> {
         let (text, symbols) = self.query(script, assumptions)?;
-        self.told = Size { clauses: script.len(), variables: symbols.len() };
         let file = temporary(&text)
             .map_err(|source| Error::Io { what: "cannot write the query".to_owned(), source })?;
         let path = file.path().display().to_string();
@@ -55,12 +54,13 @@ impl OneShot {
     }
 
     /// The query, and the symbols that it asks about.
-    fn query(&self, script: &Script, assumptions: &[Term]) -> Result<(Vec<u8>, Vec<Term>), Error> {
+    fn query(&mut self, script: &Script, assumptions: &[Term]) -> Result<(Vec<u8>, Vec<Term>), Error> {
         let terms = &script.terms;
         let mut printer = Printer::new();
         printer.scan(terms, script.literals(0));
         printer.scan(terms, assumptions);
-        let mut text = self.program.preamble(printer.features(), &self.options)?.into_bytes();
+        let logic = self.program.logic(printer.features(), &self.options)?;
+        let mut text = self.program.preamble(&logic, &self.options).into_bytes();
         // Writing to a vector cannot fail.
         let _ = printer.declare(&mut text, terms);
         for literals in script.assertions(0).chain(assumptions.chunks(1)) {
@@ -69,6 +69,8 @@ impl OneShot {
         text.extend_from_slice(b"(check-sat)\n");
         let known = |t: &Term| terms.op(*t) == Op::Symbol && printer.is_declared(*t);
         let symbols: Vec<Term> = terms.iter().filter(known).collect();
+        let (clauses, variables, bytes) = (script.len(), symbols.len(), text.len());
+        self.told = Told { clauses, variables, bytes, logic: Some(logic) };
         for asked in symbols.chunks(ASK) {
             text.extend_from_slice(&get_value(&printer, script, asked));
         }
@@ -118,7 +120,7 @@ impl Session for OneShot {
         Identity { name: self.program.name.clone(), version: self.program.version.get() }
     }
 
-    fn size(&self) -> Size {
-        self.told
+    fn told(&self) -> Told {
+        self.told.clone()
     }
 }
