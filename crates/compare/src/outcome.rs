@@ -22,6 +22,8 @@ pub(crate) struct Outcome {
     pub(crate) horizon: Option<u64>,
     pub(crate) variables: Option<u64>,
     pub(crate) assertions: Option<u64>,
+    pub(crate) bytes: Option<u64>,
+    pub(crate) logic: Option<String>,
     pub(crate) message: Option<String>,
 }
 
@@ -37,7 +39,22 @@ impl Outcome {
             horizon: None,
             variables: None,
             assertions: None,
+            bytes: None,
+            logic: None,
             message,
+        }
+    }
+}
+
+impl Outcome {
+    /// With the size of a query.
+    pub(crate) fn sized(self, query: &Query) -> Outcome {
+        Outcome {
+            logic: query.logic.clone(),
+            variables: Some(query.variables),
+            assertions: Some(query.assertions),
+            bytes: Some(query.bytes),
+            ..self
         }
     }
 }
@@ -52,6 +69,7 @@ struct Said {
     solver: Solver,
     quantifiers: String,
     states: String,
+    logic: Option<String>,
     size: Size,
 }
 
@@ -72,6 +90,7 @@ struct Solver {
 struct Size {
     variables: u64,
     clauses: u64,
+    bytes: Option<u64>,
 }
 
 /// What `hyperplan solve --format json` came to.
@@ -120,6 +139,8 @@ pub(crate) fn of_problem(measured: &Measured, over: bool) -> Outcome {
         horizon: said.horizon.into_values().flatten().max(),
         variables: Some(said.size.variables),
         assertions: Some(said.size.clauses),
+        bytes: said.size.bytes,
+        logic: said.logic,
         ..outcome
     }
 }

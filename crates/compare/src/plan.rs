@@ -6,7 +6,7 @@ use hyperplan_solver::Standalone;
 use sha2::{Digest as _, Sha256};
 
 use crate::query::Query;
-use crate::record::Limit;
+use crate::record::{Answer, Limit};
 
 /// Something to be solved.
 #[derive(Clone, Debug)]
@@ -25,6 +25,8 @@ pub struct Instance {
     pub set: Vec<String>,
     /// The largest horizon of a path.
     pub horizon: Option<u64>,
+    /// The right answer, where the file says it; of a query, see there.
+    pub expected: Option<Answer>,
     /// What kind of file it is.
     pub kind: Kind,
 }
@@ -69,6 +71,8 @@ pub struct Ways {
     pub limit: Limit,
     /// Further options of `solve`.
     pub options: Vec<String>,
+    /// Tells builds of hyperplan apart, which does the runs on problem files.
+    pub build: String,
 }
 
 /// One run to be done.
@@ -124,7 +128,7 @@ pub fn plan(instances: &[Arc<Instance>], solvers: &[Arc<Candidate>], ways: &Ways
                             repetition,
                             limit: ways.limit,
                         };
-                        run.key = run.digest();
+                        run.key = run.digest(&ways.build);
                         runs.push(run);
                     }
                 }
@@ -151,10 +155,11 @@ fn encodings(instance: &Instance, solver: &Candidate, ways: &Ways) -> Vec<(Optio
 const READING: &str = "without status";
 
 impl Run {
-    /// A digest of all that the outcome depends on.
-    fn digest(&self) -> String {
+    /// A digest of all that the outcome depends on, with the build of hyperplan where it takes part.
+    fn digest(&self, build: &str) -> String {
         let Run { key: _, instance, solver, quantifiers, states, options, seed, repetition, limit } = self;
-        let Instance { name, family: _, file, sha256, others, set, horizon: _, kind } = &**instance;
+        let Instance { name, family: _, file, sha256, others, set, horizon: _, expected: _, kind } =
+            &**instance;
         let Candidate { name: solver, version, stamp, standalone } = &**solver;
         let standalone = standalone.as_ref().map(|standalone| match kind {
             // hyperplan adds arguments by itself.
@@ -164,7 +169,7 @@ impl Run {
             }
         });
         let own = match kind {
-            Kind::Problem { .. } => env!("CARGO_PKG_VERSION"),
+            Kind::Problem { .. } => build,
             Kind::Query(_) => READING,
         };
         let input = (name, sha256, others, set);
@@ -216,6 +221,7 @@ mod tests {
             others: String::new(),
             set: Vec::new(),
             horizon: None,
+            expected: None,
             kind,
         })
     }
@@ -228,6 +234,7 @@ mod tests {
             repetitions: 2,
             limit: Limit::default(),
             options: Vec::new(),
+            build: "one".to_owned(),
         }
     }
 
@@ -279,8 +286,9 @@ mod tests {
             run(&|_, _, w| w.limit.cpu_s = Some(1.0)),
             run(&|_, _, w| w.limit.memory_mib = Some(1)),
             run(&|_, _, w| w.options = vec!["--no-verify".to_owned()]),
+            run(&|_, _, w| w.build = "another".to_owned()),
         ]);
-        assert_eq!(keys.len(), 10);
+        assert_eq!(keys.len(), 11);
         // The family is for tables only.
         assert!(!keys.insert(run(&|i, _, _| i.family = "x".to_owned())));
     }

@@ -261,12 +261,12 @@ impl Folders {
     }
 
     /// The largest query that was kept.
-    fn largest(&self) -> Option<(u64, Query)> {
+    fn largest(&self) -> Option<Query> {
         let folder = self.base.join(self.queries.as_ref()?);
         let files = fs::read_dir(folder).ok()?.flatten();
         let sized = files.filter_map(|file| Some((file.metadata().ok()?.len(), file.path())));
-        let (bytes, path): (u64, PathBuf) = sized.max()?;
-        Some((bytes, Query::scan(&fs::read_to_string(path).ok()?)))
+        let (_, path): (u64, PathBuf) = sized.max()?;
+        Some(Query::scan(&fs::read_to_string(path).ok()?))
     }
 }
 
@@ -327,14 +327,15 @@ fn record(run: &Run, setting: &Setting, measured: &Measured, folders: &Folders) 
     } else {
         past(limit.wall_s, measured.wall_s).then_some("wall time")
     };
-    let kept = folders.largest();
-    let query = match &instance.kind {
-        Kind::Query(query) => Some((query.bytes, query)),
-        Kind::Problem { .. } => kept.as_ref().map(|(bytes, query)| (*bytes, query)),
-    };
     let outcome: Outcome = match &instance.kind {
-        Kind::Query(query) => outcome::of_query(measured, query, over.is_some()),
-        Kind::Problem { .. } => outcome::of_problem(measured, over.is_some()),
+        Kind::Query(query) => outcome::of_query(measured, query, over.is_some()).sized(query),
+        Kind::Problem { .. } => {
+            let said = outcome::of_problem(measured, over.is_some());
+            // One that failed does not say what it asked.
+            let kept = if said.variables.is_none() { folders.largest() } else { None };
+            let said = kept.iter().fold(said, Outcome::sized);
+            Outcome { expected: instance.expected, ..said }
+        }
     };
     let message = match (outcome.status, outcome.message) {
         // Which time it was; the reason `timeout` says no more than the status.
@@ -343,12 +344,11 @@ fn record(run: &Run, setting: &Setting, measured: &Measured, folders: &Folders) 
         }
         (_, message) => message,
     };
-    let size = |of: fn(&Query) -> u64| query.map(|(_, query)| of(query));
     Record {
         instance: instance.name.clone(),
         family: instance.family.clone(),
         sha256: instance.sha256.clone(),
-        logic: query.and_then(|(_, query)| query.logic.clone()),
+        logic: outcome.logic,
         states: run.states.clone(),
         quantifiers: run.quantifiers.clone(),
         horizon: instance.horizon.or(outcome.horizon),
@@ -368,9 +368,9 @@ fn record(run: &Run, setting: &Setting, measured: &Measured, folders: &Folders) 
         exit_code: measured.exit_code,
         signal: measured.signal,
         host: setting.host.clone(),
-        variables: outcome.variables.or_else(|| size(|query| query.variables)),
-        assertions: outcome.assertions.or_else(|| size(|query| query.assertions)),
-        bytes: query.map(|(bytes, _)| bytes),
+        variables: outcome.variables,
+        assertions: outcome.assertions,
+        bytes: outcome.bytes,
         message: measured.failure.clone().or(message),
         queries: folders.queries.clone(),
         key: run.key.clone(),

@@ -5,10 +5,10 @@ use crate::failure::{Failure, Outcome};
 use crate::load::{Beside, read_bytes, reason};
 use crate::output::Output;
 use crate::report;
-use hyperplan_compare::Query;
 use hyperplan_compare::plan::{Instance, Kind, sha256};
+use hyperplan_compare::{Answer, Query};
 use hyperplan_horizon::horizons;
-use hyperplan_problem::{Loader, Overrides, Problem, read};
+use hyperplan_problem::{KnownStatus, Loader, Overrides, Problem, read};
 use hyperplan_syntax::{Diagnostic, SourceMap};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -162,6 +162,7 @@ fn of_file(
         others: String::new(),
         set: Vec::new(),
         horizon: None,
+        expected: None,
         kind,
     };
     if is_query(file) {
@@ -172,6 +173,7 @@ fn of_file(
         return Ok(vec![instance(Kind::Query(query))]);
     }
     let text = std::str::from_utf8(&bytes).map_err(|_| cannot("it is not in UTF-8".to_owned()))?;
+    let known: Vec<KnownStatus> = KnownStatus::of_text(text).collect();
     let mut found = Vec::new();
     for set in sets {
         let (problem, others) = lower(file, text, set, out)?;
@@ -185,11 +187,27 @@ fn of_file(
                 others: others.clone(),
                 set: set.iter().map(|(name, value)| format!("{name}={value}")).collect(),
                 horizon: horizons(objective).iter().filter_map(|horizon| horizon.steps).max(),
+                expected: expected(&known, &objective.name, set).map_err(cannot)?,
                 ..instance(Kind::Problem { objective: objective.name.clone() })
             });
         }
     }
     Ok(found)
+}
+
+/// What is known of an objective with those constants.
+fn expected(
+    known: &[KnownStatus],
+    objective: &str,
+    set: &[(String, String)],
+) -> Result<Option<Answer>, String> {
+    let mut said =
+        known.iter().filter(|status| status.is_about(objective, set)).map(|status| status.realizable);
+    let Some(realizable) = said.next() else { return Ok(None) };
+    if said.any(|other| other != realizable) {
+        return Err(format!("its comments call {objective} both realizable and unrealizable"));
+    }
+    Ok(Some(if realizable { Answer::Sat } else { Answer::Unsat }))
 }
 
 /// What a file means with those constants, and a digest of the other files that it reads.

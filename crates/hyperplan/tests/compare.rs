@@ -166,6 +166,55 @@ fn disagreements_come_first() {
 }
 
 #[test]
+fn what_a_problem_file_says_of_its_objectives() {
+    let comparison = Comparison::new();
+    let files = comparison.queries(0);
+    let rooms = fs::read_to_string(specs().join("rooms.hp")).expect("it is there");
+    let sp = "// sp: realizable\n";
+    assert!(rooms.contains(sp));
+    let wrong = rooms.replace(sp, "// sp: realizable\n// sp T=1: realizable\n");
+    let file = files.join("rooms.hp");
+    fs::write(&file, &wrong).expect("ours");
+    let run = comparison.run(&[text(&file), "--objective=sp", "--set=T=1,2,6", "--solver=builtin"]);
+    assert_eq!(run.status, 5, "{}", run.stderr);
+    let found = format!("{}#sp T=1: against the known status", text(&file));
+    assert!(run.stdout.starts_with(&found), "{}", run.stdout);
+    let expected: Vec<_> = comparison.records().iter().map(|record| record["expected"].clone()).collect();
+    assert_eq!(expected, ["sat".into(), serde_json::Value::Null, serde_json::Value::Null]);
+    let run = comparison.run(&[text(&file), "--objective=sp,iso", "--solver=builtin"]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    assert_eq!(comparison.records()[3]["expected"], "sat");
+    // Both cannot be.
+    fs::write(&file, wrong.replace(sp, "// sp: realizable\n// sp: unrealizable\n")).expect("ours");
+    let run = comparison.run(&[text(&file), "--objective=sp", "--solver=builtin"]);
+    assert_eq!(run.status, 2);
+    assert!(run.stderr.contains("its comments call sp both realizable and unrealizable"), "{}", run.stderr);
+}
+
+#[test]
+fn what_solvers_got_of_a_problem() {
+    let comparison = Comparison::new();
+    let rooms = specs().join("rooms.hp");
+    let fake = Fake::replying("*check-sat*) echo unsat;;");
+    let solver = format!("--solver=builtin,'{}'", fake.program().display());
+    let run = comparison.run(&[text(&rooms), "--objective=sp", "--set=T=2", "--quantifiers=expand", &solver]);
+    let records = comparison.records();
+    assert_eq!(records.len(), 2, "{}", run.stderr);
+    for record in records {
+        assert!(
+            record["variables"].as_u64() > Some(1) && record["assertions"].as_u64() > Some(1),
+            "{record}"
+        );
+        if record["solver"] == "builtin" {
+            assert!(record["logic"].is_null() && record["bytes"].is_null(), "{record}");
+        } else {
+            assert_eq!(record["logic"], "QF_BV", "{record}");
+            assert!(record["bytes"].as_u64() > Some(100), "{record}");
+        }
+    }
+}
+
+#[test]
 fn answers_against_the_known_status() {
     let comparison = Comparison::new();
     let files = comparison.queries(0);

@@ -11,6 +11,7 @@ mod objective;
 pub mod prelude;
 #[allow(clippy::module_inception)]
 mod problem;
+mod status;
 mod strategy;
 mod system;
 
@@ -20,5 +21,6 @@ pub use ids::{ActionId, FormulaId, LabelId, PathId, SystemId, VarId};
 pub use lower::{Loader, Lowered, NoFiles, Overrides, lower, read};
 pub use objective::{Formula, Interval, Mode, Node, Objective, PathVar, Quantifier, Semantics, TemporalOp};
 pub use problem::Problem;
+pub use status::KnownStatus;
 pub use strategy::{Strategy, Trace};
 pub use system::{Clause, Label, Map, System, Update, Var};

@@ -14,7 +14,7 @@ fn said(verdict: &str, reason: Option<&str>) -> String {
     format!(
         r#"{{"file": "a.hp", "objective": "sp", "verdict": "{verdict}", "reason": {reason}, "horizon": {{"p": 6, "q": null}},
         "verified": "by-search", "solver": {{"name": "z3", "version": "4.8"}}, "quantifiers": "expand", "states": "onehot",
-        "size": {{"variables": 3, "clauses": 4}}}}"#
+        "logic": "QF_BV", "size": {{"variables": 3, "clauses": 4, "bytes": 56}}}}"#
     )
     .replace('\n', " ")
 }
@@ -32,6 +32,8 @@ fn answers_to_problems() {
         horizon: Some(6),
         variables: Some(3),
         assertions: Some(4),
+        bytes: Some(56),
+        logic: Some("QF_BV".to_owned()),
         message: None,
     };
     assert_eq!(outcome, expected);

@@ -9,7 +9,7 @@ use crate::progress::Progress;
 use crate::signals;
 use clap::ValueEnum;
 use hyperplan_compare::benchexec::{Configuration, Problem};
-use hyperplan_compare::plan::{Candidate, Instance, Kind, Run, Ways, count, plan};
+use hyperplan_compare::plan::{Candidate, Instance, Kind, Run, Ways, count, plan, sha256};
 use hyperplan_compare::report::write_all;
 use hyperplan_compare::{
     Event, Limit, Log, LogError, Past, Record, Setting, judge, prepare, run_all, summary,
@@ -29,7 +29,7 @@ pub(crate) fn run(args: &args::Compare, quiet: bool, out: &mut Output) -> Outcom
     if args.files.is_empty() {
         return again(&args.out, out);
     }
-    let ways = ways(args)?;
+    let mut ways = ways(args)?;
     let solvers = candidates(args.solver.as_deref())?;
     let instances = instances(args, out)?;
     if let Some(folder) = &args.benchexec {
@@ -40,6 +40,10 @@ pub(crate) fn run(args: &args::Compare, quiet: bool, out: &mut Output) -> Outcom
         return Err(Failure::input(format_args!(
             "these would be {number} runs, of at most {MOST_RUNS}; take fewer of --repeat, --seed, files or encodings"
         )));
+    }
+    let hyperplan = std::env::current_exe().map_err(Failure::input)?;
+    if instances.iter().any(|instance| matches!(instance.kind, Kind::Problem { .. })) {
+        ways.build = build(&hyperplan)?;
     }
     let runs = plan(&instances, &solvers, &ways);
     if runs.is_empty() {
@@ -52,7 +56,7 @@ pub(crate) fn run(args: &args::Compare, quiet: bool, out: &mut Output) -> Outcom
     past.notes.iter().for_each(|note| out.remark(format_args!("note: {note}")));
     let setting = Setting {
         jobs: args.jobs.into(),
-        hyperplan: std::env::current_exe().map_err(Failure::input)?,
+        hyperplan,
         supervisor: vec!["supervise".to_owned()],
         folder,
         queries: args.queries,
@@ -181,7 +185,7 @@ fn benchexec(
                 file: instance.file.clone().into(),
                 objective: Some(objective.clone()),
                 set: instance.set.clone(),
-                expected: None,
+                expected: instance.expected,
             }),
         })
         .collect();
@@ -250,6 +254,7 @@ fn ways(args: &args::Compare) -> Outcome<Ways> {
         repetitions: args.repeat,
         limit: Limit { wall_s: Some(args.timeout), cpu_s: args.cpu, memory_mib: args.memory },
         options: args.no_verify.then(|| "--no-verify".to_owned()).into_iter().collect(),
+        build: String::new(),
     })
 }
 
@@ -288,6 +293,12 @@ fn candidates(solvers: Option<&str>) -> Outcome<Vec<Arc<Candidate>>> {
         candidates.push(Arc::new(Candidate { name, version, stamp, standalone }));
     }
     Ok(candidates)
+}
+
+/// A digest of the program: the version does not change with every change of the code.
+fn build(program: &Path) -> Outcome<String> {
+    let cannot = |error| Failure::input(format_args!("cannot read {}: {error}", program.display()));
+    Ok(sha256(&std::fs::read(program).map_err(cannot)?))
 }
 
 /// The length of a program and when it was written.
