@@ -275,13 +275,22 @@ fn details(cell: &Cell<'_>) -> String {
     if cell.runs.len() > 1 {
         text.push_str(&format!(", median of {} runs", cell.runs.len()));
     }
+    if let Some(waiting) = run.solver_s {
+        text.push_str(&format!(", {} s of it in the solver", seconds(waiting)));
+    }
     let used = [("quantifiers", &run.quantifiers_used), ("states", &run.states_used)];
     for (name, how) in used {
         if let Some(how) = how {
             text.push_str(&format!(", {name} {how}"));
         }
     }
-    let sizes = [("horizon", run.horizon), ("variables", run.variables), ("assertions", run.assertions)];
+    let sizes = [
+        ("horizon", run.horizon),
+        ("variables", run.variables),
+        ("assertions", run.assertions),
+        ("bytes", run.bytes),
+        ("rounds", run.rounds),
+    ];
     for (name, size) in sizes {
         if let Some(size) = size {
             text.push_str(&format!(", {name} {size}"));

@@ -24,6 +24,8 @@ pub(crate) struct Outcome {
     pub(crate) assertions: Option<u64>,
     pub(crate) bytes: Option<u64>,
     pub(crate) logic: Option<String>,
+    pub(crate) solver_s: Option<f64>,
+    pub(crate) rounds: Option<u64>,
     pub(crate) message: Option<String>,
 }
 
@@ -41,6 +43,8 @@ impl Outcome {
             assertions: None,
             bytes: None,
             logic: None,
+            solver_s: None,
+            rounds: None,
             message,
         }
     }
@@ -70,7 +74,9 @@ struct Said {
     quantifiers: String,
     states: String,
     logic: Option<String>,
+    iterations: u64,
     size: Size,
+    seconds: Seconds,
 }
 
 #[derive(Clone, Copy, PartialEq, Deserialize)]
@@ -91,6 +97,11 @@ struct Size {
     variables: u64,
     clauses: u64,
     bytes: Option<u64>,
+}
+
+#[derive(Deserialize)]
+struct Seconds {
+    solve: f64,
 }
 
 /// What `hyperplan solve --format json` came to.
@@ -141,6 +152,8 @@ pub(crate) fn of_problem(measured: &Measured, over: bool) -> Outcome {
         assertions: Some(said.size.clauses),
         bytes: said.size.bytes,
         logic: said.logic,
+        solver_s: Some(said.seconds.solve),
+        rounds: Some(said.iterations),
         ..outcome
     }
 }

@@ -376,6 +376,8 @@ fn record(run: &Run, setting: &Setting, measured: &Measured, folders: &Folders) 
         key: run.key.clone(),
         states_used: outcome.states,
         quantifiers_used: outcome.quantifiers,
+        solver_s: outcome.solver_s,
+        rounds: outcome.rounds,
     }
 }
 

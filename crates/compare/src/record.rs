@@ -111,6 +111,12 @@ pub struct Record {
     /// In the same way, how quantifiers were decided.
     #[serde(default)]
     pub quantifiers_used: Option<String>,
+    /// Of the wall time, what was spent waiting for the solver's answers, in seconds; `None` for a query.
+    #[serde(default)]
+    pub solver_s: Option<f64>,
+    /// How often the outermost query was asked; `None` for a query.
+    #[serde(default)]
+    pub rounds: Option<u64>,
 }
 
 #[cfg(test)]
@@ -151,6 +157,8 @@ pub(crate) mod tests {
             key: key.to_owned(),
             states_used: None,
             quantifiers_used: None,
+            solver_s: None,
+            rounds: None,
         }
     }
 
@@ -158,7 +166,7 @@ pub(crate) mod tests {
     fn later_fields_may_be_missing() {
         let mut line = serde_json::to_value(record("")).expect("it is JSON");
         let fields = line.as_object_mut().expect("it is an object");
-        for field in ["key", "states_used", "quantifiers_used"] {
+        for field in ["key", "states_used", "quantifiers_used", "solver_s", "rounds"] {
             assert!(fields.remove(field).is_some());
         }
         assert_eq!(serde_json::from_value::<Record>(line).expect("it is a record"), record(""));

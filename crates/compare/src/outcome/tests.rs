@@ -14,7 +14,8 @@ fn said(verdict: &str, reason: Option<&str>) -> String {
     format!(
         r#"{{"file": "a.hp", "objective": "sp", "verdict": "{verdict}", "reason": {reason}, "horizon": {{"p": 6, "q": null}},
         "verified": "by-search", "solver": {{"name": "z3", "version": "4.8"}}, "quantifiers": "expand", "states": "onehot",
-        "logic": "QF_BV", "size": {{"variables": 3, "clauses": 4, "bytes": 56}}}}"#
+        "logic": "QF_BV", "size": {{"variables": 3, "clauses": 4, "bytes": 56}},
+        "iterations": 2, "seconds": {{"solve": 0.25}}}}"#
     )
     .replace('\n', " ")
 }
@@ -34,6 +35,8 @@ fn answers_to_problems() {
         assertions: Some(4),
         bytes: Some(56),
         logic: Some("QF_BV".to_owned()),
+        solver_s: Some(0.25),
+        rounds: Some(2),
         message: None,
     };
     assert_eq!(outcome, expected);

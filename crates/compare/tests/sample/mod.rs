@@ -42,6 +42,8 @@ pub(crate) fn run(solver: &str, instance: &str, status: Status, wall_s: f64) -> 
         key: String::new(),
         states_used: None,
         quantifiers_used: None,
+        solver_s: Some(wall_s / 2.0),
+        rounds: Some(1),
     }
 }
 
