@@ -8,7 +8,7 @@ use crate::report;
 use hyperplan_compare::plan::{Instance, Kind, sha256};
 use hyperplan_compare::{Answer, Query};
 use hyperplan_horizon::horizons;
-use hyperplan_problem::{KnownStatus, Loader, Overrides, Problem, read};
+use hyperplan_problem::{KnownStatus, Loader, Lowered, Overrides, Problem, Value, read};
 use hyperplan_syntax::{Diagnostic, SourceMap};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -173,10 +173,10 @@ fn of_file(
         return Ok(vec![instance(Kind::Query(query))]);
     }
     let text = std::str::from_utf8(&bytes).map_err(|_| cannot("it is not in UTF-8".to_owned()))?;
-    let known: Vec<KnownStatus> = KnownStatus::of_text(text).collect();
+    let known = known(file, text);
     let mut found = Vec::new();
     for set in sets {
-        let (problem, others) = lower(file, text, set, out)?;
+        let Meaning { problem, consts, others } = lower(file, text, set, out)?;
         for objective in &problem.objectives {
             if !objectives.iter().any(|name| name == "all" || *name == objective.name) {
                 continue;
@@ -187,7 +187,7 @@ fn of_file(
                 others: others.clone(),
                 set: set.iter().map(|(name, value)| format!("{name}={value}")).collect(),
                 horizon: horizons(objective).iter().filter_map(|horizon| horizon.steps).max(),
-                expected: expected(&known, &objective.name, set).map_err(cannot)?,
+                expected: expected(&known, &objective.name, &consts).map_err(cannot)?,
                 ..instance(Kind::Problem { objective: objective.name.clone() })
             });
         }
@@ -195,14 +195,28 @@ fn of_file(
     Ok(found)
 }
 
+/// What a file says is known, each with the values that all constants have then. What it says of values for which it has
+/// errors is about nothing.
+fn known(file: &Path, text: &str) -> Vec<(KnownStatus, Consts)> {
+    let mut consts: BTreeMap<Vec<(String, String)>, Option<Consts>> = BTreeMap::new();
+    let with_consts = |status: KnownStatus| {
+        let values = consts.entry(status.set.clone()).or_insert_with_key(|set| {
+            let (lowered, _, _) = read_with(file, text, set);
+            (!lowered.has_errors()).then_some(lowered.consts)
+        });
+        values.clone().map(|values| (status, values))
+    };
+    KnownStatus::of_text(text).filter_map(with_consts).collect()
+}
+
 /// What is known of an objective with those constants.
 fn expected(
-    known: &[KnownStatus],
+    known: &[(KnownStatus, Consts)],
     objective: &str,
-    set: &[(String, String)],
+    consts: &Consts,
 ) -> Result<Option<Answer>, String> {
-    let mut said =
-        known.iter().filter(|status| status.is_about(objective, set)).map(|status| status.realizable);
+    let about = known.iter().filter(|(status, values)| status.objective == objective && values == consts);
+    let mut said = about.map(|(status, _)| status.realizable);
     let Some(realizable) = said.next() else { return Ok(None) };
     if said.any(|other| other != realizable) {
         return Err(format!("its comments call {objective} both realizable and unrealizable"));
@@ -210,21 +224,40 @@ fn expected(
     Ok(Some(if realizable { Answer::Sat } else { Answer::Unsat }))
 }
 
-/// What a file means with those constants, and a digest of the other files that it reads.
-fn lower(file: &Path, text: &str, set: &[(String, String)], out: &Output) -> Outcome<(Problem, String)> {
-    let folder = file.parent().unwrap_or(Path::new("")).to_owned();
-    let loader = Noted { folder: Beside(folder), read: RefCell::default() };
-    let overrides = Overrides { values: set.to_vec() };
-    let mut sources = SourceMap::new();
-    let lowered = read(&mut sources, &file.display().to_string(), text, &loader, &overrides);
+/// The constants of a file with their values.
+type Consts = Vec<(String, Value)>;
+
+/// What a file means with certain constants.
+struct Meaning {
+    problem: Problem,
+    consts: Consts,
+    /// A digest of the other files that it reads.
+    others: String,
+}
+
+fn lower(file: &Path, text: &str, set: &[(String, String)], out: &Output) -> Outcome<Meaning> {
+    let (lowered, sources, others) = read_with(file, text, set);
     if lowered.has_errors() {
         let errors: Vec<Diagnostic> = lowered.diagnostics.into_iter().filter(Diagnostic::is_error).collect();
         report::diagnostics(&sources, &errors, out);
         return Err(Failure::said());
     }
-    let others = loader.read.into_inner();
     let others = if others.is_empty() { String::new() } else { sha256(format!("{others:?}").as_bytes()) };
-    Ok((lowered.problem, others))
+    Ok(Meaning { problem: lowered.problem, consts: lowered.consts, others })
+}
+
+/// Reads a file with certain constants; also the digests of the other files that it reads.
+fn read_with(
+    file: &Path,
+    text: &str,
+    set: &[(String, String)],
+) -> (Lowered, SourceMap, BTreeMap<String, String>) {
+    let folder = file.parent().unwrap_or(Path::new("")).to_owned();
+    let loader = Noted { folder: Beside(folder), read: RefCell::default() };
+    let overrides = Overrides { values: set.to_vec() };
+    let mut sources = SourceMap::new();
+    let lowered = read(&mut sources, &file.display().to_string(), text, &loader, &overrides);
+    (lowered, sources, loader.read.into_inner())
 }
 
 /// Notes what is loaded.

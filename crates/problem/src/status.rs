@@ -1,7 +1,5 @@
 //! What a problem file says is known of its objectives, in comments such as `// fastest: realizable`.
 
-use std::iter;
-
 /// What is known of an objective, as `:status` says it of an SMT-LIB benchmark.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct KnownStatus {
@@ -39,16 +37,6 @@ impl KnownStatus {
         let by = answer.flat_map(|solvers| solvers.split(',')).map(|name| name.trim().to_owned()).collect();
         Some(KnownStatus { objective, set: set.collect::<Option<_>>()?, realizable, by })
     }
-
-    /// Whether it is about an objective with those constants set, each by its last value.
-    #[must_use]
-    pub fn is_about(&self, objective: &str, set: &[(String, String)]) -> bool {
-        let last = |set: &[(String, String)], name: &str| {
-            set.iter().rev().find(|(other, _)| other == name).map(|(_, value)| value.clone())
-        };
-        let same = |name: &String| last(&self.set, name) == last(set, name);
-        self.objective == objective && iter::chain(&self.set, set).all(|(name, _)| same(name))
-    }
 }
 
 #[cfg(test)]
@@ -71,13 +59,5 @@ mod tests {
             },
         ];
         assert_eq!(known, expected);
-        let [second, first] = set;
-        assert!(known[1].is_about("sp", &[first.clone(), second.clone()]));
-        assert!(known[1].is_about("sp", &[("T".to_owned(), "1".to_owned()), first.clone(), second.clone()]));
-        for set in [&[][..], &[first], &[second]] {
-            assert!(!known[1].is_about("sp", set), "{set:?}");
-            assert_eq!(known[0].is_about("sp", set), set.is_empty(), "{set:?}");
-        }
-        assert!(!known[0].is_about("isr", &[]));
     }
 }
