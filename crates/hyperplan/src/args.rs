@@ -136,6 +136,12 @@ pub(crate) enum Command {
     Solvers(Solvers),
     /// Show the built-in templates
     Templates(Templates),
+    /// Write a commented problem file to begin with
+    New(New),
+    /// Print a shell's completions
+    Completions(Completions),
+    /// Print the manual page, or write all of them
+    Man(Man),
     /// Measures one run of a comparison, which is read from standard input
     #[command(hide = true)]
     Supervise,
@@ -439,6 +445,28 @@ pub(crate) struct Settings {
 pub(crate) struct Solvers {
     #[command(flatten)]
     pub(crate) output: Output,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct New {
+    /// The file (.hp), which must not be there yet; without it, standard output
+    pub(crate) file: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Completions {
+    /// The shell that is to read them
+    pub(crate) shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Man {
+    /// The command; without it, hyperplan itself
+    #[arg(conflicts_with = "output")]
+    pub(crate) command: Option<String>,
+    /// Writes the pages of all commands into this folder
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -1,4 +1,4 @@
-//! `horizon`, `check`, `plot`, `solvers`, `templates`.
+//! `horizon`, `check`, `plot`, `solvers`, `templates`, `new`, `completions`, `man`.
 
 mod common;
 
@@ -163,4 +163,49 @@ fn templates_shows_the_prelude() {
         assert!(one.stdout.starts_with("//"), "{}", one.stdout);
     }
     assert_eq!(hyperplan(&["templates", "quickest_path"]).status, 2);
+}
+
+#[test]
+fn a_file_to_begin_with() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("world.hp");
+    let name = file.to_str().expect("a name in UTF-8");
+    let run = hyperplan(&["new", name]);
+    assert_eq!((run.status, run.stdout.as_str()), (0, ""), "{}", run.stderr);
+    let written = std::fs::read_to_string(&file).expect("it was written");
+    assert!(written.contains(&format!("hyperplan check {name} ")), "{written}");
+    let run = hyperplan(&["check", "-D", name]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    assert_eq!(hyperplan(&["check", "--print", name]).stdout, written);
+    for (question, status) in
+        [(&["fastest"][..], 0), (&["fastest", "--set", "T=6"], 1), (&["robust"], 0), (&["hidden"], 0)]
+    {
+        let run = hyperplan(&[&["solve", name, "--objective"], question].concat());
+        assert_eq!(run.status, status, "{question:?}: {}{}", run.stdout, run.stderr);
+    }
+    // What somebody wrote meanwhile is not lost.
+    let run = hyperplan(&["new", name]);
+    assert_eq!((run.status, run.stderr), (2, format!("error: {name} is there already\n")));
+    assert_eq!(hyperplan(&["new"]).stdout.replace("FILE", name), written);
+}
+
+#[test]
+fn completions_and_manual_pages() {
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let run = hyperplan(&["completions", shell]);
+        assert_eq!(run.status, 0, "{}", run.stderr);
+        assert!(run.stdout.contains("minimize") && !run.stdout.contains("supervise"), "{shell}");
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let name = folder.path().to_str().expect("a name in UTF-8");
+    let run = hyperplan(&["man", "-o", name]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    for (command, page) in [(None, "hyperplan.1"), (Some("solve"), "hyperplan-solve.1")] {
+        let page = std::fs::read_to_string(folder.path().join(page)).expect("it was written");
+        assert!(page.contains(".SH NAME") && page.contains("hyperplan"), "{page}");
+        let run = hyperplan(&[&["man"][..], command.as_slice()].concat());
+        assert!(run.status == 0 && run.stdout.contains(".SH SYNOPSIS"), "{}", run.stderr);
+    }
+    assert!(!folder.path().join("hyperplan-supervise.1").exists());
+    assert_eq!(hyperplan(&["man", "nothing"]).status, 2);
 }

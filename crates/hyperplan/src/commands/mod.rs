@@ -5,6 +5,8 @@ mod compare;
 mod emit;
 mod emit_family;
 mod horizon;
+mod manual;
+mod new;
 mod plot;
 mod solve;
 mod solvers;
@@ -28,6 +30,9 @@ pub(crate) fn run(cli: &Cli, out: &mut Output) -> Outcome {
         Command::Compare(args) => compare::run(args, cli.global.quiet, out),
         Command::Solvers(args) => solvers::run(args, out),
         Command::Templates(args) => templates::run(args, out),
+        Command::New(args) => new::run(args, out),
+        Command::Completions(args) => manual::completions(args, out),
+        Command::Man(args) => manual::man(args, out),
         Command::Supervise => compare::supervise(),
     }
 }

@@ -1,0 +1,53 @@
+//! `hyperplan completions` and `hyperplan man`: what shells and manual readers want to know of the command line.
+
+use crate::args::{self, Cli};
+use crate::failure::{Failure, Outcome, Status};
+use crate::output::{Output, cannot_write};
+use clap::CommandFactory as _;
+
+pub(crate) fn completions(args: &args::Completions, out: &mut Output) -> Outcome {
+    let mut script = Vec::new();
+    clap_complete::generate(args.shell, &mut visible(), "hyperplan", &mut script);
+    out.write(|w| w.write_all(&script))?;
+    Ok(Status::Good)
+}
+
+/// All pages into a folder, or one page.
+pub(crate) fn man(args: &args::Man, out: &mut Output) -> Outcome {
+    if let Some(folder) = &args.output {
+        let written =
+            std::fs::create_dir_all(folder).and_then(|()| clap_mangen::generate_to(visible(), folder));
+        written.map_err(|error| cannot_write(folder, &error))?;
+        return Ok(Status::Good);
+    }
+    let mut command = visible();
+    command.build();
+    let command = match &args.command {
+        None => command,
+        Some(name) => {
+            let missing = || Failure::input(format_args!("there is no command `{name}`"));
+            command.find_subcommand(name).cloned().ok_or_else(missing)?
+        }
+    };
+    let mut page = Vec::new();
+    let source = concat!("hyperplan ", env!("CARGO_PKG_VERSION"));
+    clap_mangen::Man::new(command).source(source).render(&mut page).map_err(Failure::input)?;
+    out.write(|w| w.write_all(&page))?;
+    Ok(Status::Good)
+}
+
+/// The command line without what is only for hyperplan itself.
+fn visible() -> clap::Command {
+    let all = Cli::command();
+    let shown: Vec<clap::Command> = all.get_subcommands().filter(|c| !c.is_hide_set()).cloned().collect();
+    let mut command = clap::Command::new("hyperplan").args(all.get_arguments().cloned()).subcommands(shown);
+    for (set, text) in [
+        (clap::Command::about as fn(_, clap::builder::StyledStr) -> _, all.get_about()),
+        (clap::Command::after_help, all.get_after_help()),
+    ] {
+        if let Some(text) = text {
+            command = set(command, text.clone());
+        }
+    }
+    command.version(env!("CARGO_PKG_VERSION"))
+}
