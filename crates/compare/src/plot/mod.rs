@@ -5,7 +5,7 @@ mod cactus;
 mod scatter;
 
 use svg::Node;
-use svg::node::element::{Element, Group, Line, Path, Text};
+use svg::node::element::{Element, Group, Line, Path, Rectangle, Text};
 
 use crate::contest::Contest;
 
@@ -31,6 +31,8 @@ const MARKERS: [&str; 8] = [
     "M-4 -2h8M-4 2h8",
 ];
 
+/// Paper, since what shows a file may be dark.
+const GROUND: &str = "#ffffff";
 const INK: &str = "#000000";
 const FAINT: &str = "#5c5c5c";
 const PALE: &str = "#b0b0b0";
@@ -184,6 +186,8 @@ fn document(width: f64, height: f64, title: &str, contents: Group) -> String {
     document.assign("class", "plot");
     document.assign("font-family", "sans-serif");
     document.assign("font-size", 12);
+    let ground = Rectangle::new().set("class", "ground").set("fill", GROUND);
+    document.append(ground.set("width", "100%").set("height", "100%"));
     document.append(contents);
     format!("{document}\n")
 }
