@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::text::one_line;
 use crate::{Answer, Record, Status};
 
 /// What takes part in a comparison: a solver together with everything that was chosen for it.
@@ -298,7 +299,10 @@ fn instances<'a>(places: impl Iterator<Item = (&'a str, &'a str, &'a [String], &
             name: name.to_owned(),
             set: set.to_vec(),
             sha256: sha256.to_owned(),
-            label: std::iter::once(name).chain(set.iter().map(String::as_str)).collect::<Vec<_>>().join(" "),
+            label: one_line(
+                &std::iter::once(name).chain(set.iter().map(String::as_str)).collect::<Vec<_>>().join(" "),
+            )
+            .into_owned(),
         })
         .collect();
     let mut labels: BTreeMap<String, usize> = BTreeMap::new();
@@ -336,7 +340,7 @@ fn contestants(identities: &[Identity<'_>]) -> Vec<Contestant> {
         for part in parts.into_iter().flatten() {
             label = format!("{label} {part}");
         }
-        label
+        one_line(&label).into_owned()
     };
     identities
         .iter()

@@ -1,12 +1,14 @@
 //! What is wrong with the answers: who contradicts whom, and whose fault it is.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 
 use serde::Serialize;
 
 use crate::contest::{Contest, answer, is_query, is_refuted, is_refuted_strategy, is_wrong_model};
-use crate::{Answer, Record, Status};
+use crate::text::one_line;
+use crate::{Answer, Record};
 
 /// What is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -14,9 +16,9 @@ use crate::{Answer, Record, Status};
 pub enum Kind {
     /// An answer contradicts the known status.
     Expected,
-    /// Different solvers gave different answers.
+    /// Different solvers gave different answers, each always the same.
     Disagreement,
-    /// One solver gave different answers, to different encodings or in different runs.
+    /// One solver gave different answers, to different encodings or in different runs, whatever others said.
     SelfContradiction,
     /// A model does not satisfy its query.
     WrongModel,
@@ -174,8 +176,11 @@ impl<'a> Instance<'a> {
         if said.iter().all(|run| answer(run.record) == first) {
             return None;
         }
-        let one = said.iter().all(|run| run.record.solver == said[0].record.solver);
-        let kind = if one { Kind::SelfContradiction } else { Kind::Disagreement };
+        let mut first_of = BTreeMap::new();
+        let contradicts_itself = said.iter().any(|run| {
+            *first_of.entry(&run.record.solver).or_insert(answer(run.record)) != answer(run.record)
+        });
+        let kind = if contradicts_itself { Kind::SelfContradiction } else { Kind::Disagreement };
         let wrong: Vec<&Run<'_>> = match self.truth {
             Some(_) => said.iter().copied().filter(|run| answer(run.record) != self.truth).collect(),
             None => said.clone(),
@@ -240,29 +245,6 @@ fn claims(runs: &[&Run<'_>]) -> Vec<Claim> {
     found.into_values().collect()
 }
 
-impl fmt::Display for Answer {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Answer::Sat => "sat",
-            Answer::Unsat => "unsat",
-        })
-    }
-}
-
-impl fmt::Display for Status {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Status::Sat => "sat",
-            Status::Unsat => "unsat",
-            Status::Unknown => "unknown",
-            Status::Timeout => "timeout",
-            Status::Memout => "memout",
-            Status::Error => "error",
-            Status::Unsupported => "unsupported",
-        })
-    }
-}
-
 impl fmt::Display for Kind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -285,6 +267,7 @@ impl fmt::Display for Fault {
     }
 }
 
+/// Who said what; what was said besides stands in [`Claim::details`].
 impl fmt::Display for Claim {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.who)?;
@@ -295,19 +278,26 @@ impl fmt::Display for Claim {
             match verified.as_str() {
                 "refuted" => f.write_str(", refuted")?,
                 "model" => f.write_str(", model checked")?,
-                how => write!(f, ", verified {how}")?,
+                how => write!(f, ", verified {}", one_line(how))?,
             }
         }
         if self.runs > 1 {
             write!(f, " ({} runs)", self.runs)?;
         }
-        if let Some(message) = &self.message {
-            write!(f, ": {message}")?;
-        }
-        match &self.queries {
-            Some(queries) => write!(f, "; queries: {queries}"),
-            None => Ok(()),
-        }
+        Ok(())
+    }
+}
+
+impl Claim {
+    /// The message, line by line, and where the queries are.
+    pub fn details(&self) -> impl Iterator<Item = Cow<'_, str>> {
+        let queries = self.queries.as_deref().map(|path| Cow::from(format!("queries: {}", one_line(path))));
+        self.said().chain(queries)
+    }
+
+    /// The message, line by line.
+    pub(crate) fn said(&self) -> impl Iterator<Item = Cow<'_, str>> {
+        self.message.as_deref().unwrap_or_default().lines().map(one_line)
     }
 }
 
@@ -321,13 +311,16 @@ impl fmt::Display for Finding {
     }
 }
 
-/// A line for each finding, and an indented one for each claim.
+/// A line for each finding, an indented one for each claim, and below it what was said.
 impl fmt::Display for Judgement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for finding in &self.findings {
             writeln!(f, "{finding}")?;
             for claim in &finding.claims {
                 writeln!(f, "  {claim}")?;
+                for line in claim.details() {
+                    writeln!(f, "    {line}")?;
+                }
             }
         }
         Ok(())

@@ -8,6 +8,7 @@ pub mod benchexec;
 pub mod contest;
 mod html;
 mod judge;
+mod latex;
 mod log;
 mod outcome;
 pub mod plan;
@@ -19,6 +20,8 @@ pub mod report;
 pub mod score;
 mod supervise;
 pub mod table;
+mod terminal;
+mod text;
 mod tree;
 
 pub use judge::{Claim, Fault, Finding, Judgement, Kind, judge};
@@ -27,11 +30,13 @@ pub use pool::{Event, Setting, prepare, run_all};
 pub use query::Query;
 pub use record::{Answer, Limit, Record, Status};
 pub use supervise::supervise;
+pub use text::one_line;
 
 use contest::Contest;
 
-/// What a terminal shows of a comparison: what is wrong, the results if they are few, the scores.
-pub fn summary(records: &[Record]) -> String {
+/// What a terminal shows of a comparison: what is wrong, the results if they are few, the scores. Tables are made to fit
+/// into that width; without one they have everything.
+pub fn summary(records: &[Record], width: Option<usize>) -> String {
     let contest = Contest::new(records);
-    table::summary(&contest, &judge::judge_contest(&contest))
+    terminal::summary(&contest, &judge::judge_contest(&contest), width)
 }

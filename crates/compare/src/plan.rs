@@ -7,6 +7,7 @@ use sha2::{Digest as _, Sha256};
 
 use crate::query::Query;
 use crate::record::{Answer, Limit};
+use crate::text::one_line;
 
 /// Something to be solved.
 #[derive(Clone, Debug)]
@@ -193,7 +194,7 @@ impl Run {
         if self.repetition != 0 {
             words.push(format!("repetition {}", self.repetition));
         }
-        words.join(" ")
+        one_line(&words.join(" ")).into_owned()
     }
 }
 

@@ -1,5 +1,7 @@
 //! One finished run, as a line of a comparison's log.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
 /// What a run ended with.
@@ -30,6 +32,29 @@ pub enum Answer {
     Sat,
     /// Unsatisfiable, unrealizable.
     Unsat,
+}
+
+impl fmt::Display for Answer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Answer::Sat => "sat",
+            Answer::Unsat => "unsat",
+        })
+    }
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Status::Sat => "sat",
+            Status::Unsat => "unsat",
+            Status::Unknown => "unknown",
+            Status::Timeout => "timeout",
+            Status::Memout => "memout",
+            Status::Error => "error",
+            Status::Unsupported => "unsupported",
+        })
+    }
 }
 
 /// The limits of one run.

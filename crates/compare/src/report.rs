@@ -9,6 +9,7 @@ use crate::Record;
 use crate::contest::Contest;
 use crate::html;
 use crate::judge::{Judgement, judge_contest};
+use crate::latex;
 use crate::plot;
 use crate::score::{Scores, scores};
 use crate::table;
@@ -126,5 +127,6 @@ fn latex(sheets: &[table::Sheet]) -> String {
         .iter()
         .map(|sheet| format!("% {}\n{}", sheet.caption.replace(['\n', '\r'], " "), table::latex(sheet)))
         .collect();
-    format!("% \\usepackage{{booktabs}}\n{}", tables.join("\n"))
+    let packages = sheets.iter().map(latex::packages).max_by_key(|packages| packages.len());
+    format!("% \\usepackage{{{}}}\n{}", packages.unwrap_or("booktabs"), tables.join("\n"))
 }

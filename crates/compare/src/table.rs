@@ -1,14 +1,17 @@
-//! Tables: of scores, for terminals, Markdown and LaTeX; of runs, as CSV.
+//! Tables: of scores and instances, for Markdown and whatever else; of runs, as CSV.
 
+use std::borrow::Cow;
 use std::io;
 
-use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use serde::Serialize;
 
 use crate::contest::{Cell, Contest};
-use crate::judge::Judgement;
 use crate::score::{Score, Scores, scores};
+use crate::text::one_line;
 use crate::{Answer, Record, Status};
+
+pub use crate::latex::latex;
+pub use crate::terminal::terminal;
 
 /// Names of columns and the rows below.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -75,8 +78,8 @@ pub fn sheet(scores: &Scores, caption: &str) -> Sheet {
     }
 }
 
-const SOLVER_UNIQUE: &str = "solver unique";
-const SEQUENTIAL: &str = "seq. #";
+pub(crate) const SOLVER_UNIQUE: &str = "solver unique";
+pub(crate) const SEQUENTIAL: &str = "seq. #";
 
 /// The instances with what each contestant made of them, best contestant first: seconds, or what happened else.
 pub fn instances(contest: &Contest<'_>, scores: &Scores) -> Sheet {
@@ -111,7 +114,7 @@ pub fn sheets(contest: &Contest<'_>) -> Vec<Sheet> {
     if families.len() > 1 {
         for family in families {
             let scores = scores(contest, |i| contest.instances[i].family == family);
-            sheets.push(sheet(&scores.of_counted(), family));
+            sheets.push(sheet(&scores.of_counted(), &one_line(family)));
         }
     }
     sheets
@@ -170,46 +173,6 @@ pub(crate) fn notes(contest: &Contest<'_>, scores: &Scores) -> Vec<String> {
     notes
 }
 
-/// So many instances are listed on a terminal.
-const FEW: usize = 40;
-
-/// The tables for a terminal, after what is wrong.
-pub(crate) fn summary(contest: &Contest<'_>, judgement: &Judgement) -> String {
-    if contest.instances.is_empty() {
-        return "no runs\n".to_owned();
-    }
-    let all = scores(contest, |_| true);
-    let mut text = judgement.to_string();
-    if !text.is_empty() {
-        text.push('\n');
-    }
-    if contest.instances.len() <= FEW {
-        text.push_str(&terminal(&instances(contest, &all)));
-        text.push('\n');
-    }
-    text.push_str(&terminal(&sheet(&all, "all")));
-    text.push('\n');
-    for note in notes(contest, &all) {
-        text.push_str(&note);
-        text.push('\n');
-    }
-    text
-}
-
-/// A table in plain characters. It is as wide as it is: what is piped to a file is not to depend on a terminal.
-pub fn terminal(sheet: &Sheet) -> String {
-    let mut table = Table::new();
-    table.load_style(presets::NOTHING).set_content_arrangement(ContentArrangement::Disabled);
-    table.set_header(&sheet.head).add_rows(&sheet.rows);
-    for (i, column) in table.column_iter_mut().enumerate() {
-        column.set_padding((0, 2));
-        if !sheet.text[i] {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
-    table.lines().map(|line| format!("{}\n", line.trim_end())).collect()
-}
-
 /// A table in Markdown.
 pub fn markdown(sheet: &Sheet) -> String {
     let line = |cells: &[String]| {
@@ -237,47 +200,6 @@ fn markdown_text(text: &str) -> String {
     escaped
 }
 
-/// A table in LaTeX, with the rules of the package `booktabs`.
-pub fn latex(sheet: &Sheet) -> String {
-    let line = |cells: &[String]| {
-        let cells: Vec<String> = cells.iter().map(|cell| latex_text(cell)).collect();
-        // After the end of a line these would be an argument of it.
-        let apart = if cells.first().is_some_and(|cell| cell.starts_with(['[', '*'])) { "{}" } else { "" };
-        format!("  {apart}{} \\\\\n", cells.join(" & "))
-    };
-    let columns: String = sheet.text.iter().map(|text| if *text { 'l' } else { 'r' }).collect();
-    let mut text =
-        format!("\\begin{{tabular}}{{{columns}}}\n  \\toprule\n{}  \\midrule\n", line(&sheet.head));
-    for row in &sheet.rows {
-        // The virtual best solver has no place.
-        if row.first().is_some_and(String::is_empty) {
-            text.push_str("  \\midrule\n");
-        }
-        text.push_str(&line(row));
-    }
-    text.push_str("  \\bottomrule\n\\end{tabular}\n");
-    text
-}
-
-fn latex_text(text: &str) -> String {
-    let mut escaped = String::new();
-    for c in text.chars() {
-        match c {
-            '#' | '$' | '%' | '&' | '_' | '{' | '}' => escaped.extend(['\\', c]),
-            '\\' => escaped.push_str(r"\textbackslash{}"),
-            '~' => escaped.push_str(r"\textasciitilde{}"),
-            '^' => escaped.push_str(r"\textasciicircum{}"),
-            '<' => escaped.push_str(r"\textless{}"),
-            '>' => escaped.push_str(r"\textgreater{}"),
-            // Two would become a dash.
-            '-' if escaped.ends_with('-') => escaped.push_str("{}-"),
-            '\n' | '\r' => escaped.push(' '),
-            _ => escaped.push(c),
-        }
-    }
-    escaped
-}
-
 /// Seconds, with as many digits as they are worth.
 pub(crate) fn seconds(seconds: f64) -> String {
     if seconds.abs() < 10.0 {
@@ -292,8 +214,8 @@ pub(crate) fn seconds(seconds: f64) -> String {
 /// A record as a row of CSV: flat, in the order of the columns.
 #[derive(Serialize)]
 struct Row<'a> {
-    instance: &'a str,
-    family: &'a str,
+    instance: Cow<'a, str>,
+    family: Cow<'a, str>,
     sha256: &'a str,
     logic: Option<&'a str>,
     states: Option<&'a str>,
@@ -302,9 +224,9 @@ struct Row<'a> {
     quantifiers_used: Option<&'a str>,
     horizon: Option<u64>,
     set: String,
-    solver: &'a str,
-    version: Option<&'a str>,
-    options: &'a str,
+    solver: Cow<'a, str>,
+    version: Option<Cow<'a, str>>,
+    options: Cow<'a, str>,
     seed: u64,
     repetition: u32,
     status: Status,
@@ -324,15 +246,15 @@ struct Row<'a> {
     variables: Option<u64>,
     assertions: Option<u64>,
     bytes: Option<u64>,
-    message: Option<&'a str>,
-    queries: Option<&'a str>,
+    message: Option<Cow<'a, str>>,
+    queries: Option<Cow<'a, str>>,
 }
 
 impl<'a> From<&'a Record> for Row<'a> {
     fn from(record: &'a Record) -> Self {
         Self {
-            instance: &record.instance,
-            family: &record.family,
+            instance: one_line(&record.instance),
+            family: one_line(&record.family),
             sha256: &record.sha256,
             logic: record.logic.as_deref(),
             states: record.states.as_deref(),
@@ -340,10 +262,10 @@ impl<'a> From<&'a Record> for Row<'a> {
             states_used: record.states_used.as_deref(),
             quantifiers_used: record.quantifiers_used.as_deref(),
             horizon: record.horizon,
-            set: record.set.join(" "),
-            solver: &record.solver,
-            version: record.version.as_deref(),
-            options: &record.options,
+            set: one_line(&record.set.join(" ")).into_owned(),
+            solver: one_line(&record.solver),
+            version: record.version.as_deref().map(one_line),
+            options: one_line(&record.options),
             seed: record.seed,
             repetition: record.repetition,
             status: record.status,
@@ -363,13 +285,13 @@ impl<'a> From<&'a Record> for Row<'a> {
             variables: record.variables,
             assertions: record.assertions,
             bytes: record.bytes,
-            message: record.message.as_deref(),
-            queries: record.queries.as_deref(),
+            message: record.message.as_deref().map(one_line),
+            queries: record.queries.as_deref().map(one_line),
         }
     }
 }
 
-/// Writes every column of every record as CSV.
+/// Writes every column of every record as CSV, a line each, whatever is in names and messages.
 pub fn csv(records: &[Record], to: impl io::Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(to);
     for record in records {

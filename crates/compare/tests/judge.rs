@@ -54,7 +54,7 @@ fn different_encodings_that_disagree_blame_us() {
         mode("z3", "expand", Status::Unsat),
         mode("cvc5", "expand", Status::Unsat),
     ];
-    assert_eq!(kinds(&records), [(Kind::Disagreement, Fault::Ours)]);
+    assert_eq!(kinds(&records), [(Kind::SelfContradiction, Fault::Ours)]);
 }
 
 /// What `auto` became is what was asked.
@@ -72,6 +72,13 @@ fn the_encodings_that_were_used() {
 fn one_solver_and_two_seeds() {
     let records = [said("z3", Status::Sat), Record { seed: 1, ..said("z3", Status::Unsat) }];
     assert_eq!(kinds(&records), [(Kind::SelfContradiction, Fault::Solver)]);
+    // Whoever else took part, and whatever they said.
+    for status in [Status::Sat, Status::Unsat, Status::Timeout] {
+        let records = [&[said("cvc5", status)], &records[..]].concat();
+        assert_eq!(kinds(&records), [(Kind::SelfContradiction, Fault::Solver)]);
+    }
+    let others = [said("cvc5", Status::Sat), said("cvc5", Status::Sat), said("z3", Status::Unsat)];
+    assert_eq!(kinds(&others), [(Kind::Disagreement, Fault::Solver)]);
 }
 
 #[test]
@@ -127,12 +134,15 @@ fn witnesses_that_fail() {
 fn what_is_printed() {
     let expected = "\
 specs/known.hp#k: against the known status, a bug of hyperplan's until shown otherwise; known: unsat
-  z3 keep says sat: said \"sat\", </script> and more
+  z3 keep says sat
+    said \"sat\", </script> and more
   builtin auto says unsat
   cvc5 auto says unsat
   z3 expand says unsat
 specs/model.hp#m: a model fails, a solver's fault; known: sat
-  cvc5 auto: solver cvc5 gave a wrong model: it does not satisfy the query; queries: queries/model/cvc5
+  cvc5 auto
+    solver cvc5 gave a wrong model: it does not satisfy the query
+    queries: queries/model/cvc5
 ";
     assert_eq!(judge(&sample()).to_string(), expected);
     assert_eq!(judge(&sample()).exit_code(), 5);

@@ -36,8 +36,61 @@ fn files() {
 
 #[test]
 fn terminal() {
-    golden("summary.txt", &summary(&sample()));
-    assert_eq!(summary(&[]), "no runs\n");
+    golden("summary.txt", &summary(&sample(), None));
+    assert_eq!(summary(&[], None), "no runs\n");
+}
+
+/// Tables fit, and what is not shown is said; only where the terminal is too narrow for anything do lines get longer.
+#[test]
+fn narrow_terminals() {
+    let records: Vec<Record> = (0..12)
+        .flat_map(|c| (0..5).map(move |i| (c, i)))
+        .map(|(c, i)| run(&format!("solver-{c}"), &format!("specs/{i}.hp#o"), Status::Sat, 1.0))
+        .collect();
+    let longest = |text: &str| {
+        let tables = text.split("Order:").next().unwrap_or_default();
+        tables.lines().map(|line| line.chars().count()).max().unwrap_or(0)
+    };
+    let whole = summary(&records, None);
+    assert_eq!(summary(&records, Some(1000)), whole);
+    assert!(longest(&whole) > 130 && !whole.contains("report.html"), "{whole}");
+    let narrow = summary(&records, Some(80));
+    assert!(narrow.contains("\nand 7 more; report.html has all\n"), "{narrow}");
+    assert!(longest(&narrow) <= 80 && longest(&narrow) > 70, "{narrow}");
+    let narrower = summary(&records, Some(50));
+    assert!(
+        narrower.contains("Not shown here, but in report.html: fastest, counted, CPU, unique.\n"),
+        "{narrower}"
+    );
+    assert!(longest(&narrower) <= 50 + 20, "{narrower}");
+    assert!(summary(&records, Some(0)).contains("and 11 more; report.html has all"));
+}
+
+#[test]
+fn names_that_break_lines() {
+    let nasty = "a\nb\u{1b}[31m\r|c";
+    let mut records = [run(nasty, nasty, Status::Sat, 1.0), run("z3", nasty, Status::Unsat, 1.0)];
+    for (record, family) in records.iter_mut().zip([nasty, "b\nc"]) {
+        record.set = vec![nasty.to_owned()];
+        record.family = family.to_owned();
+        record.message = Some("first\nsec\rond".to_owned());
+        record.queries = Some(nasty.to_owned());
+    }
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    write_all(&records, dir.path()).expect("a folder that can be written");
+    let read = |name: &str| fs::read_to_string(dir.path().join(name)).expect("it was written");
+    assert_eq!(read("runs.csv").lines().count(), 3);
+    for text in
+        [read("runs.csv"), read("table.md"), read("instances.md"), read("table.tex"), summary(&records, None)]
+    {
+        assert!(!text.contains(['\r', '\u{1b}']), "{text}");
+        assert!(!text.lines().any(|line| line.starts_with(['b', '[']) || line.starts_with("sec")), "{text}");
+    }
+    assert_eq!(read("instances.md").lines().count(), 4);
+    assert!(read("runs.csv").contains(r"a\nb\u{1b}[31m\r|c"));
+    // What is for programs is as it was.
+    let same: Vec<Record> = serde_json::from_str(&read("runs.json")).expect("records");
+    assert_eq!(same, records);
 }
 
 /// Nothing to show is shown.
@@ -50,7 +103,7 @@ fn odd_ones() {
     for records in [&[] as &[Record], &none, &unsupported, &infinite] {
         let dir = tempfile::tempdir().expect("a temporary folder");
         write_all(records, dir.path()).expect("a folder that can be written");
-        assert!(!summary(records).is_empty());
+        assert!(!summary(records, None).is_empty());
     }
 }
 

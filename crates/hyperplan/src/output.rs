@@ -31,6 +31,12 @@ impl Output {
         self.quiet
     }
 
+    /// How many characters a line of standard output has room for, where it is a terminal.
+    pub(crate) fn width(&self) -> Option<usize> {
+        let (width, _) = terminal_size::terminal_size_of(io::stdout())?;
+        Some(width.0.into())
+    }
+
     /// Whether the reader of standard output has gone.
     pub(crate) fn is_closed(&self) -> bool {
         self.closed

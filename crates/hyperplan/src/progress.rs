@@ -1,7 +1,7 @@
 //! How far a comparison is: a bar on a terminal, a line for each run elsewhere.
 
 use crate::output::Output;
-use hyperplan_compare::{Record, Status};
+use hyperplan_compare::{Record, Status, one_line};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{self, IsTerminal as _};
 use std::time::{Duration, Instant};
@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 /// Tells what was done and what is left.
 pub(crate) struct Progress<'a> {
     out: &'a Output,
+    verbose: bool,
     bar: Option<ProgressBar>,
     start: Instant,
     done: usize,
@@ -16,8 +17,8 @@ pub(crate) struct Progress<'a> {
 }
 
 impl<'a> Progress<'a> {
-    pub(crate) fn new(all: usize, quiet: bool, out: &'a Output) -> Self {
-        let bar = (io::stderr().is_terminal() && !quiet && all > 0).then(|| {
+    pub(crate) fn new(all: usize, verbose: bool, out: &'a Output) -> Self {
+        let bar = (io::stderr().is_terminal() && !out.is_quiet() && all > 0).then(|| {
             let bar = ProgressBar::new(all as u64);
             let template = "{bar:30} {pos}/{len}, {elapsed} so far, {eta} left  {wide_msg}";
             bar.set_style(
@@ -26,7 +27,7 @@ impl<'a> Progress<'a> {
             bar.enable_steady_tick(Duration::from_millis(500));
             bar
         });
-        Progress { out, bar, start: Instant::now(), done: 0, all }
+        Progress { out, verbose, bar, start: Instant::now(), done: 0, all }
     }
 
     /// A run has begun.
@@ -39,16 +40,19 @@ impl<'a> Progress<'a> {
     /// A run has ended.
     pub(crate) fn finished(&mut self, label: &str, record: &Record) {
         self.done += 1;
-        let mut line = format!("{label}: {} {:.2} s", word(record.status), record.wall_s);
-        if let (Status::Error, Some(message)) = (record.status, &record.message) {
-            line.push_str(&format!(" ({message})"));
+        let mut line = format!("{label}: {} {:.2} s", record.status, record.wall_s);
+        if let (Status::Error, Some(message), false) = (record.status, &record.message, self.verbose) {
+            line.push_str(&format!(" ({})", one_line(message)));
         }
+        let below = if self.verbose { details(record) } else { String::new() };
         match &self.bar {
-            None => self.out.remark(format_args!("[{}/{}] {line}{}", self.done, self.all, self.left())),
+            None => {
+                self.out.remark(format_args!("[{}/{}] {line}{}{below}", self.done, self.all, self.left()));
+            }
             Some(bar) => {
                 // What went wrong stays to be read.
-                if record.status == Status::Error {
-                    bar.println(line);
+                if self.verbose || record.status == Status::Error {
+                    bar.println(line + &below);
                 }
                 bar.inc(1);
             }
@@ -76,14 +80,17 @@ impl Drop for Progress<'_> {
     }
 }
 
-fn word(status: Status) -> &'static str {
-    match status {
-        Status::Sat => "sat",
-        Status::Unsat => "unsat",
-        Status::Unknown => "unknown",
-        Status::Timeout => "timeout",
-        Status::Memout => "out of memory",
-        Status::Error => "error",
-        Status::Unsupported => "unsupported",
+/// How a run was verified, what it took and what it said, on lines of their own.
+fn details(record: &Record) -> String {
+    let verified = match record.verified.as_deref() {
+        None => String::new(),
+        Some("model") => "model checked; ".to_owned(),
+        Some("refuted") => "refuted; ".to_owned(),
+        Some(how) => format!("verified {}; ", one_line(how)),
+    };
+    let mut text = format!("\n    {verified}CPU {:.2} s, memory {:.1} MiB", record.cpu_s, record.memory_mib);
+    for line in record.message.iter().flat_map(|message| message.lines()) {
+        text.push_str(&format!("\n    {}", one_line(line)));
     }
+    text
 }

@@ -25,7 +25,7 @@ const LOG: &str = "runs.jsonl";
 /// More runs than this are hardly meant.
 const MOST_RUNS: u64 = 1_000_000;
 
-pub(crate) fn run(args: &args::Compare, quiet: bool, out: &mut Output) -> Outcome {
+pub(crate) fn run(args: &args::Compare, verbose: bool, out: &mut Output) -> Outcome {
     if args.files.is_empty() {
         return again(&args.out, out);
     }
@@ -71,7 +71,7 @@ pub(crate) fn run(args: &args::Compare, quiet: bool, out: &mut Output) -> Outcom
             runs.len()
         ));
     }
-    if !do_all(&missing, &setting, &mut log, &mut done, Progress::new(missing.len(), quiet, out))? {
+    if !do_all(&missing, &setting, &mut log, &mut done, Progress::new(missing.len(), verbose, out))? {
         out.error(format_args!(
             "interrupted: {} of {} runs are done, and kept in {}; the same command does the others",
             done.len(),
@@ -160,7 +160,7 @@ fn place(record: &Record) -> impl Ord + use<> {
 
 /// Prints what is wrong and the scores, and writes all reports.
 fn report(records: &[Record], folder: &Path, out: &mut Output) -> Outcome {
-    let summary = summary(records);
+    let summary = summary(records, out.width());
     out.line(summary.trim_end())?;
     write_all(records, folder).map_err(|error| {
         Failure::input(format_args!("cannot write the reports in {}: {error}", folder.display()))

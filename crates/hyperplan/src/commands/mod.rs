@@ -27,7 +27,7 @@ pub(crate) fn run(cli: &Cli, out: &mut Output) -> Outcome {
         Command::Check(args) => check::run(args, verbose, out),
         Command::Verify(args) => verify::run(args, out),
         Command::Plot(args) => plot::run(args, out),
-        Command::Compare(args) => compare::run(args, cli.global.quiet, out),
+        Command::Compare(args) => compare::run(args, verbose, out),
         Command::Solvers(args) => solvers::run(args, out),
         Command::Templates(args) => templates::run(args, out),
         Command::New(args) => new::run(args, out),
