@@ -1,15 +1,17 @@
-//! The report as a page: one file that needs no network. The template escapes all text of records; links stay below
-//! the page's own folder, whatever a record says.
+//! The report as a page: one file that needs no network. The template escapes all text of records; links are relative,
+//! whatever a record says.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
-use std::fmt::Write as _;
 use std::io;
+use std::path::Path;
 
 use askama::Template;
 use serde::Serialize;
 
 use crate::contest::{Cell, Contest, Instance, is_certified};
 use crate::judge::{Claim, Finding, Judgement};
+use crate::links::{Link, Links};
 use crate::plot::{self, Kind, Scatter};
 use crate::score::Scores;
 use crate::table::{self, Sheet, seconds};
@@ -45,7 +47,8 @@ struct FindingView {
 
 struct ClaimView {
     text: String,
-    queries: Option<String>,
+    said: Vec<String>,
+    queries: Vec<Link>,
 }
 
 /// A table of the page.
@@ -104,14 +107,15 @@ struct ContestantData<'a> {
     words: Vec<String>,
 }
 
-/// Writes the page. `queries` leads from the page's folder to the log's, where the records' queries are.
+/// Writes the page for a folder. `log` leads from there to the log's, where the records' queries are.
 pub(crate) fn page(
     contest: &Contest<'_>,
     judgement: &Judgement,
     scores: &Scores,
-    queries: &str,
+    folder: &Path,
+    log: &str,
 ) -> io::Result<String> {
-    let link = |path: &str| link(queries, path);
+    let links = Links::new(folder, log);
     let order = scores.order();
     let pair = (order.first().copied().unwrap_or(0), order.get(1).copied().unwrap_or(0));
     let sheets = table::sheets(contest);
@@ -121,7 +125,7 @@ pub(crate) fn page(
         script: include_str!("../templates/report.js"),
         facts: facts(contest),
         verdict: verdict(judgement),
-        findings: judgement.findings.iter().map(|finding| finding_view(finding, &link)).collect(),
+        findings: judgement.findings.iter().map(|finding| finding_view(finding, &links)).collect(),
         scores: scores_grid(all, "scores", "Scores"),
         notes: table::notes(contest, scores),
         cactus: if order.is_empty() { String::new() } else { plot::cactus(contest, scores) },
@@ -129,7 +133,7 @@ pub(crate) fn page(
         names: contest.contestants.iter().map(|contestant| contestant.label.clone()).collect(),
         pair,
         families: (0..).zip(families).map(|(i, sheet)| family(i, sheet)).collect(),
-        instances: instances(contest, &order, &link),
+        instances: instances(contest, &order, &links),
         contestants: contestants(contest),
         data: data(contest)?,
     };
@@ -179,10 +183,11 @@ fn verdict(judgement: &Judgement) -> String {
     format!("{findings} {are} wrong; {whose}.")
 }
 
-fn finding_view(finding: &Finding, link: &impl Fn(&str) -> String) -> FindingView {
+fn finding_view(finding: &Finding, links: &Links<'_>) -> FindingView {
     let claim = |claim: &Claim| ClaimView {
-        text: Claim { queries: None, ..claim.clone() }.to_string(),
-        queries: claim.queries.as_deref().map(link),
+        text: claim.to_string(),
+        said: claim.said().map(Cow::into_owned).collect(),
+        queries: claim.queries.as_deref().map_or_else(Vec::new, |queries| links.queries(queries)),
     };
     FindingView {
         instance: finding.instance.clone(),
@@ -217,7 +222,7 @@ fn scores_grid(sheet: &Sheet, id: &str, caption: &str) -> Grid {
 }
 
 /// The instances with what each contestant made of them, best contestant first.
-fn instances(contest: &Contest<'_>, order: &[usize], link: &impl Fn(&str) -> String) -> Grid {
+fn instances(contest: &Contest<'_>, order: &[usize], links: &Links<'_>) -> Grid {
     let names = order.iter().map(|&c| contest.contestants[c].label.clone());
     let row = |(i, instance): (usize, &Instance)| {
         let disputed = contest.disputed[i];
@@ -227,10 +232,11 @@ fn instances(contest: &Contest<'_>, order: &[usize], link: &impl Fn(&str) -> Str
         let name = GridCell {
             text: instance.label.clone(),
             title: Some(format!("sha256 {}", instance.sha256)),
+            href: links.instance(&instance.name),
             ..GridCell::default()
         };
         let only = contest.only(i).filter(|_| order.len() > 1);
-        let cells = order.iter().map(|&c| result(contest.cells[i][c].as_ref(), only == Some(c), link));
+        let cells = order.iter().map(|&c| result(contest.cells[i][c].as_ref(), only == Some(c), links));
         GridRow { cells: [name, answer].into_iter().chain(cells).collect(), last: false }
     };
     Grid {
@@ -242,7 +248,7 @@ fn instances(contest: &Contest<'_>, order: &[usize], link: &impl Fn(&str) -> Str
     }
 }
 
-fn result(cell: Option<&Cell<'_>>, only: bool, link: &impl Fn(&str) -> String) -> GridCell {
+fn result(cell: Option<&Cell<'_>>, only: bool, links: &Links<'_>) -> GridCell {
     let Some(cell) = cell else { return GridCell::default() };
     let mark = match (cell.wrong, only) {
         (true, _) => "✗ ",
@@ -254,7 +260,7 @@ fn result(cell: Option<&Cell<'_>>, only: bool, link: &impl Fn(&str) -> String) -
         text: format!("{mark}{}", table::result(cell)),
         key: (cell.solved().is_some() && wall_s.is_finite()).then_some(wall_s),
         title: Some(details(cell)),
-        href: cell.runs.iter().find_map(|run| run.queries.as_deref()).map(link),
+        href: cell.runs.iter().find_map(|run| run.queries.as_deref()).map(|queries| links.largest(queries)),
         bad: cell.wrong,
     }
 }
@@ -347,23 +353,4 @@ fn data(contest: &Contest<'_>) -> io::Result<String> {
         contestants: contestants.collect(),
     };
     Ok(serde_json::to_string(&data)?.replace('<', "\\u003c"))
-}
-
-/// A relative link, whatever the path looks like.
-fn link(base: &str, path: &str) -> String {
-    let mut link = String::from("./");
-    for part in [base, path].into_iter().filter(|part| !part.is_empty()) {
-        if !link.ends_with('/') {
-            link.push('/');
-        }
-        for byte in part.bytes() {
-            match byte {
-                b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'~' | b'/' => {
-                    link.push(char::from(byte))
-                }
-                _ => write!(link, "%{byte:02X}").unwrap_or(()),
-            }
-        }
-    }
-    link
 }

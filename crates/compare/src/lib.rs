@@ -9,6 +9,7 @@ pub mod contest;
 mod html;
 mod judge;
 mod latex;
+mod links;
 mod log;
 mod outcome;
 pub mod plan;

@@ -23,7 +23,8 @@ struct Outcome<'a> {
 
 /// Writes all reports into a folder, which is made if need be, and returns what was written: `report.html`, `runs.csv`,
 /// `runs.json`, `scores.json`, `table.md`, `table.tex`, `instances.md`, `instances.tex`, `cactus.svg`, and `scatter-A-B.svg` for each two of the best contestants.
-/// The folder is that of the log, as far as links to queries are concerned.
+/// The folder is that of the log, as far as links to queries are concerned; links to instances are made where their files
+/// are found from the current folder.
 pub fn write_all(records: &[Record], dir: &Path) -> io::Result<Vec<PathBuf>> {
     write_all_from(records, dir, "")
 }
@@ -39,7 +40,7 @@ pub fn write_all_from(records: &[Record], dir: &Path, log: &str) -> io::Result<V
     let mut csv = Vec::new();
     table::csv(records, &mut csv)?;
     let mut files = vec![
-        ("report.html".to_owned(), html::page(&contest, &judgement, &scores, log)?.into_bytes()),
+        ("report.html".to_owned(), html::page(&contest, &judgement, &scores, dir, log)?.into_bytes()),
         ("runs.csv".to_owned(), csv),
         ("runs.json".to_owned(), json(&records)?),
         ("scores.json".to_owned(), json(&Outcome { judgement: &judgement, scores: &scores })?),

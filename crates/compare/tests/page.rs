@@ -167,6 +167,21 @@ fn pictures() {
     let option = format!("--print-to-pdf={}", paper.display());
     browse(chromium, &page, &[&option, "--no-pdf-header-footer"]);
     assert!(fs::read(&paper).expect("the page was printed").starts_with(b"%PDF"));
+    heads_are_on_every_page(&paper);
+}
+
+/// What is on paper, by `pdftotext`, where there is one: each page with instances has the names of the columns.
+fn heads_are_on_every_page(paper: &Path) {
+    let Ok(output) = Command::new("pdftotext").arg("-layout").arg(paper).arg("-").output() else {
+        eprintln!("skipped: pdftotext is missing");
+        return;
+    };
+    let text = String::from_utf8_lossy(&output.stdout);
+    let with_instances: Vec<&str> = text.split('\u{c}').filter(|page| page.contains(".hp#reach")).collect();
+    assert!(with_instances.len() > 1, "{text}");
+    for page in with_instances {
+        assert!(page.contains("instance ") && page.contains("answer "), "{page}");
+    }
 }
 
 /// The sample again, and many more instances on which times spread.
