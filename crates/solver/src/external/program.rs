@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::discover::{locate, search};
-use super::profile::{FILE, Profile};
+use super::profile::{FILE, Profile, profiles};
 use super::version::Version;
 use crate::error::Error;
 use crate::session::{Options, Quantifiers};
@@ -45,8 +45,10 @@ impl Program {
         let mut words = split_words(line).into_iter();
         let program = words.next().unwrap_or_default();
         let (path, tried) = search(&program);
-        let hint =
-            "give the name of a known solver (`hyperplan solvers` lists them) or of a program".to_owned();
+        let meant = similar(&program).map_or_else(String::new, |name| format!("did you mean {name}? "));
+        let hint = format!(
+            "{meant}give the name of a known solver (`hyperplan solvers` lists them) or of a program"
+        );
         let path = path.ok_or_else(|| Error::Missing { name: program.clone(), tried, hint })?;
         let name = Path::new(&program)
             .file_name()
@@ -75,6 +77,19 @@ impl Program {
     }
 }
 
+/// The known solver that was probably meant: one slip in names of up to four letters, two in longer ones.
+fn similar(program: &str) -> Option<&'static str> {
+    let program = program.to_lowercase();
+    let names = profiles().iter().flat_map(|profile| [&profile.name].into_iter().chain(&profile.aliases));
+    names
+        .map(String::as_str)
+        .chain(["builtin"])
+        .map(|name| (strsim::damerau_levenshtein(&program, name), name))
+        .filter(|(distance, name)| *distance <= if name.len() > 4 { 2 } else { 1 })
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, name)| name)
+}
+
 /// Words between blanks; single or double quotes keep blanks together.
 fn split_words(line: &str) -> Vec<String> {
     let mut words = Vec::new();
@@ -93,4 +108,20 @@ fn split_words(line: &str) -> Vec<String> {
     }
     words.extend(word);
     words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slips_in_names_of_solvers() {
+        let near = ["z4", "Z3", "cvc4", "yice", "bitwzula", "buildin", "ls", "minisat", "/usr/bin/z3x", ""]
+            .map(similar);
+        let names = ["z3", "z3", "cvc5", "yices", "bitwuzla", "builtin"].map(Some);
+        assert_eq!(near[..6], names);
+        assert_eq!(near[6..], [None; 4]);
+        let message = Program::of_command("z4 -in").err().map(|error| error.to_string()).unwrap_or_default();
+        assert!(message.contains("did you mean z3? give the name"), "{message}");
+    }
 }
