@@ -81,15 +81,15 @@ pub fn terminal(sheet: &Sheet) -> String {
     table.lines().map(|line| format!("{}\n", line.trim_end())).collect()
 }
 
-/// Leaves as many contestants as fit, the best, but one at least; how many it took away. Names of instances get half of
+/// Leaves as many contestants as fit, the best, but one at least; how many it took away. Names of instances get a third of
 /// the width, and what the others leave.
 fn fit_instances(sheet: &mut Sheet, width: usize) -> usize {
     let all = sheet.head.len();
     for label in sheet.head.iter_mut().skip(2) {
-        *label = end_of(label, (width / 4).max(LEAST));
+        *label = end_of(label, (width / 6).max(LEAST));
     }
     let others = total(&widths(sheet)[1..]) + GAP;
-    shorten(sheet, 0, width.saturating_sub(others).max(width / 2));
+    shorten(sheet, 0, width.saturating_sub(others).max(width / 3));
     let widths = widths(sheet);
     let fitting = (3..=all).take_while(|&count| total(&widths[..count]) <= width).last();
     keep(sheet, |i, _| i < fitting.unwrap_or(3));

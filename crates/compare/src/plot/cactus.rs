@@ -9,7 +9,7 @@ use crate::contest::Contest;
 use crate::score::Scores;
 
 const AREA: Area = Area { left: 64.0, top: 16.0, width: 460.0, height: 340.0 };
-const LEGEND: f64 = 210.0;
+const LEGEND: f64 = 232.0;
 const LEGEND_LINE: f64 = 20.0;
 
 /// Draws the plot. The legend is in the order of the scores.
