@@ -380,6 +380,9 @@ pub(crate) struct Compare {
     /// any, what was run before is reported again
     #[arg(value_name = "FILE|FOLDER|PATTERN")]
     pub(crate) files: Vec<String>,
+    /// Leaves out files that cannot be used, and says why, instead of running nothing
+    #[arg(long)]
+    pub(crate) skip_bad: bool,
     /// The objectives, or `all`; files that have none of that name are left out
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_value = "all")]
     pub(crate) objective: Vec<String>,

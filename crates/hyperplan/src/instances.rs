@@ -6,7 +6,7 @@ use crate::load::{Beside, read_bytes, reason};
 use crate::output::Output;
 use crate::report;
 use hyperplan_compare::plan::{Instance, Kind, sha256};
-use hyperplan_compare::{Answer, Query};
+use hyperplan_compare::{Answer, Query, one_line};
 use hyperplan_horizon::horizons;
 use hyperplan_problem::{KnownStatus, Loader, Lowered, Overrides, Problem, Value, read};
 use hyperplan_syntax::{Diagnostic, SourceMap};
@@ -18,7 +18,8 @@ use std::sync::Arc;
 /// The most combinations of constants.
 const COMBINATIONS: usize = 100_000;
 
-/// All instances, in the order of the files. Files that cannot be read are all told of, and then nothing is run.
+/// All instances, in the order of the files. Files that cannot be read are all told of, and then nothing is run, unless
+/// they are to be left out.
 pub(crate) fn instances(args: &args::Compare, out: &Output) -> Outcome<Vec<Arc<Instance>>> {
     let files = files(&args.files)?;
     let sets = combinations(&args.set)?;
@@ -26,11 +27,15 @@ pub(crate) fn instances(args: &args::Compare, out: &Output) -> Outcome<Vec<Arc<I
     let mut seen = BTreeSet::new();
     let mut bad = 0;
     for file in &files {
-        match of_file(file, &sets, &args.objective, &mut seen, out) {
+        // What is left out is told of in a line.
+        let told = (!args.skip_bad).then_some(out);
+        match of_file(file, &sets, &args.objective, &mut seen, told) {
             Ok(found) => instances.extend(found.into_iter().map(Arc::new)),
             Err(failure) => {
                 bad += 1;
-                if !failure.message.is_empty() {
+                if args.skip_bad {
+                    out.remark(format_args!("left out: {}", one_line(&failure.message)));
+                } else if !failure.message.is_empty() {
                     out.error(format_args!("error: {}", failure.message));
                 }
             }
@@ -38,9 +43,10 @@ pub(crate) fn instances(args: &args::Compare, out: &Output) -> Outcome<Vec<Arc<I
     }
     let unknown = args.objective.iter().find(|name| *name != "all" && !seen.contains(*name));
     match unknown {
-        _ if bad > 0 => Err(Failure::input(format_args!(
-            "{bad} of {} files cannot be used; nothing was run: correct them, or leave them out",
-            files.len()
+        _ if bad > 0 && (!args.skip_bad || bad == files.len()) => Err(Failure::input(format_args!(
+            "{bad} of {} files cannot be used; nothing was run{}",
+            files.len(),
+            if args.skip_bad { "" } else { ": correct them, or leave them out with --skip-bad" }
         ))),
         Some(name) => Err(Failure::input(format_args!("no file has an objective `{name}`"))),
         None if instances.is_empty() => {
@@ -148,7 +154,7 @@ fn of_file(
     sets: &[Vec<(String, String)>],
     objectives: &[String],
     seen: &mut BTreeSet<String>,
-    out: &Output,
+    out: Option<&Output>,
 ) -> Outcome<Vec<Instance>> {
     let cannot = |why: String| Failure::input(format_args!("cannot read {}: {why}", file.display()));
     let name = file.to_str().ok_or_else(|| cannot("its name is not in UTF-8".to_owned()))?;
@@ -235,10 +241,11 @@ struct Meaning {
     others: String,
 }
 
-fn lower(file: &Path, text: &str, set: &[(String, String)], out: &Output) -> Outcome<Meaning> {
+fn lower(file: &Path, text: &str, set: &[(String, String)], out: Option<&Output>) -> Outcome<Meaning> {
     let (lowered, sources, others) = read_with(file, text, set);
     if lowered.has_errors() {
         let errors: Vec<Diagnostic> = lowered.diagnostics.into_iter().filter(Diagnostic::is_error).collect();
+        let Some(out) = out else { return Err(first(file, &sources, &errors)) };
         report::diagnostics(&sources, &errors, out);
         return Err(Failure::said());
     }
@@ -258,6 +265,18 @@ fn read_with(
     let mut sources = SourceMap::new();
     let lowered = read(&mut sources, &file.display().to_string(), text, &loader, &overrides);
     (lowered, sources, loader.read.into_inner())
+}
+
+/// The first error of a file, for a line.
+fn first(file: &Path, sources: &SourceMap, errors: &[Diagnostic]) -> Failure {
+    let message = errors.first().map_or("it has errors", |error| error.message.as_str());
+    match errors.first().and_then(|error| error.span) {
+        Some(span) => {
+            let (line, column) = sources.position(span);
+            Failure::input(format_args!("{}:{line}:{column}: {message}", sources.get(span.source).name))
+        }
+        None => Failure::input(format_args!("{}: {message}", file.display())),
+    }
 }
 
 /// Notes what is loaded.

@@ -280,13 +280,19 @@ fn requests_that_cannot_be_met() {
     };
     refused(&[], 2, "name files to run; there is no ");
     refused(&[text(&files), "--solver=no-such-solver"], 4, "solver no-such-solver was not found");
+    refused(&[text(&files), "--solver=z4"], 4, "; did you mean z3? give the name of a known solver");
+    refused(
+        &["fail/empty-range.hp", "--skip-bad", &solver],
+        2,
+        "1 of 1 files cannot be used; nothing was run\n",
+    );
     refused(&[text(&files), "--solver=builtin"], 2, "the builtin solver reads no SMT-LIB files");
     refused(&["no-such-file.hp", &solver], 2, "cannot read no-such-file.hp: there is no such file");
     refused(&["no-such-*.hp", &solver], 2, "no-such-*.hp has no .hp or .smt2 file");
     refused(
         &["fail/empty-range.hp", text(&files), &solver],
         2,
-        "1 of 2 files cannot be used; nothing was run",
+        "1 of 2 files cannot be used; nothing was run: correct them, or leave them out with --skip-bad",
     );
     refused(&["rooms.hp", "--objective=sp,nobody", &solver], 2, "no file has an objective `nobody`");
     refused(
@@ -308,6 +314,62 @@ fn requests_that_cannot_be_met() {
     let run = common::hyperplan(&["compare", text(&files), &solver, "--out=/proc"]);
     assert!(run.status == 2 && run.stderr.contains("cannot write /proc"), "{}", run.stderr);
     assert_eq!(fake.begun(), 0);
+}
+
+#[test]
+fn what_cannot_be_used_may_be_left_out() {
+    let comparison = Comparison::new();
+    let files = comparison.queries(2);
+    fs::write(files.join("3.smt2"), "(assert true)").expect("ours");
+    let fake = Fake::new(&format!("{ANSWER} sat"));
+    let solver = format!("--solver='{}'", fake.program().display());
+    let bad = specs().join("fail/empty-range.hp");
+    let run = comparison.run(&[text(&bad), text(&files), "--skip-bad", &solver]);
+    assert_eq!((run.status, comparison.records().len()), (0, 2), "{}", run.stderr);
+    let left_out: Vec<&str> = run.stderr.lines().filter(|line| line.starts_with("left out: ")).collect();
+    assert_eq!(left_out.len(), 2, "{}", run.stderr);
+    assert!(left_out[0].contains("empty-range.hp:"), "{}", run.stderr);
+    assert!(left_out[1].ends_with("3.smt2: it has no (check-sat)"), "{}", run.stderr);
+    // No more is said of them.
+    assert!(run.stderr.lines().all(|line| line.starts_with(['l', '[', 'n'])), "{}", run.stderr);
+}
+
+#[test]
+fn more_of_each_run() {
+    let comparison = Comparison::new();
+    let files = comparison.queries(1);
+    let fake = Fake::new("cat > /dev/null; echo oh >&2; exit 7");
+    let below = |arguments: &[&str], what: &str| -> Vec<String> {
+        let run = comparison.run(&[arguments, &["-v"]].concat());
+        let lines: Vec<&str> = run.stderr.lines().collect();
+        let at = lines.iter().position(|line| line.contains(what)).expect(&run.stderr);
+        lines[at + 1..]
+            .iter()
+            .take_while(|line| line.starts_with("    "))
+            .map(|line| (*line).to_owned())
+            .collect()
+    };
+    let failed = below(&[text(&files), &format!("--solver='{}'", fake.program().display())], "0.smt2");
+    assert!(failed[0].starts_with("    CPU 0.") && failed[0].ends_with(" MiB"), "{failed:?}");
+    assert_eq!(failed[1..], ["    oh"]);
+    let rooms = specs().join("rooms.hp");
+    let solved = below(&[text(&rooms), "--objective=sp", "--solver=builtin"], "builtin auto/auto: sat");
+    assert!(solved[0].starts_with("    verified by-search; CPU "), "{solved:?}");
+    assert_eq!(solved.len(), 1);
+}
+
+/// A file may be called anything.
+#[test]
+fn names_that_break_lines() {
+    let comparison = Comparison::new();
+    let files = comparison.queries(0);
+    fs::write(files.join("a\nb.smt2"), "(check-sat)").expect("ours");
+    let fake = Fake::new(&format!("{ANSWER} sat"));
+    let run = comparison.run(&[text(&files), &format!("--solver='{}'", fake.program().display())]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    assert!(run.stderr.contains(r"a\nb.smt2 ") && run.stdout.contains(r"a\nb.smt2 "), "{}", run.stderr);
+    let page = fs::read_to_string(comparison.out().join("report.html")).expect("it was written");
+    assert!(page.contains("href=\"./../queries/a%0Ab.smt2\""), "{page}");
 }
 
 #[test]
