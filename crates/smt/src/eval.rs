@@ -15,7 +15,7 @@ pub enum Verdict {
     True,
     /// False.
     False,
-    /// Quantified, or a number in it does not fit into 128 bits.
+    /// Quantified, or a number in it does not fit into 128 bits, or a symbol has no value where that matters.
     Unknown,
 }
 
@@ -97,9 +97,19 @@ impl Evaluation {
     /// unknown, and so is what depends on them.
     #[must_use]
     pub fn new(terms: &Terms, model: &Model) -> Self {
+        Evaluation::with(terms, model, |sort| Some(Value::default_of(sort)))
+    }
+
+    /// Evaluates every term. Symbols without a value are unknown, and so is what depends on them.
+    #[must_use]
+    pub fn partial(terms: &Terms, model: &Model) -> Self {
+        Evaluation::with(terms, model, |_| None)
+    }
+
+    fn with(terms: &Terms, model: &Model, absent: fn(Sort) -> Option<Value>) -> Self {
         let mut evaluation = Evaluation { cells: Vec::with_capacity(terms.len()), values: Vec::new() };
         for t in terms.iter() {
-            let value = evaluation.node(terms, model, t);
+            let value = evaluation.node(terms, model, absent, t);
             let cell = match value {
                 None => UNKNOWN,
                 Some(Value::Bool(b)) => u32::from(b),
@@ -113,14 +123,17 @@ impl Evaluation {
         evaluation
     }
 
-    fn node(&self, terms: &Terms, model: &Model, t: Term) -> Option<Value> {
+    fn node(
+        &self,
+        terms: &Terms,
+        model: &Model,
+        absent: fn(Sort) -> Option<Value>,
+        t: Term,
+    ) -> Option<Value> {
         let sort = terms.sort(t);
         match terms.view(t) {
             View::Const(value) => Some(value),
-            View::Symbol(..) => {
-                let value = model.get(t).filter(|v| v.sort() == sort);
-                Some(value.unwrap_or_else(|| Value::default_of(sort)))
-            }
+            View::Symbol(..) => model.get(t).filter(|v| v.sort() == sort).or_else(|| absent(sort)),
             View::Bound(..) | View::Forall(..) => None,
             View::App(Op::And, conjuncts) => self.and(conjuncts).map(Value::Bool),
             View::App(Op::Ite, args) => {
@@ -205,7 +218,16 @@ pub struct ModelCheck {
 /// Evaluates every assertion of the script up to the first that is false.
 #[must_use]
 pub fn check_model(script: &Script, model: &Model) -> ModelCheck {
-    let evaluation = Evaluation::new(&script.terms, model);
+    check(script, &Evaluation::new(&script.terms, model))
+}
+
+/// As [`check_model`], but a symbol without a value may be anything: what depends on it is unknown.
+#[must_use]
+pub fn check_partial_model(script: &Script, model: &Model) -> ModelCheck {
+    check(script, &Evaluation::partial(&script.terms, model))
+}
+
+fn check(script: &Script, evaluation: &Evaluation) -> ModelCheck {
     let mut check = ModelCheck::default();
     for (index, literals) in script.assertions(0).enumerate() {
         match evaluation.clause(literals) {

@@ -1,24 +1,26 @@
-//! SMT terms, scripts and the SMT-LIB 2 writer.
+//! SMT terms, scripts, and the SMT-LIB 2 writer and reader.
 //!
 //! [`Terms`] is a hash-consed arena of sort-checked terms, [`Script`] a list of assertions over
 //! one, [`write_script`] prints a script as a benchmark of its own, and [`Printer`] feeds one to a
-//! solver bit by bit. [`first_violated`] evaluates a script under a [`Model`]. Nothing here
+//! solver bit by bit. [`read_script`] reads one. [`first_violated`] evaluates a script under a [`Model`]. Nothing here
 //! recurses on the depth of terms, and shared terms are printed once.
 
 mod eval;
 mod features;
 mod name;
 mod rational;
+mod read;
 mod script;
 mod term;
 mod terms;
 mod value;
 mod write;
 
-pub use eval::{Evaluation, ModelCheck, Verdict, check_model, first_violated};
+pub use eval::{Evaluation, ModelCheck, Verdict, check_model, check_partial_model, first_violated};
 pub use features::{Features, logic};
 pub use name::symbol_text;
 pub use rational::Rational;
+pub use read::{Benchmark, Origin, ReadError, read_script};
 pub use script::{Script, Section};
 pub use term::{Enumeration, Op, Sort, Stem, Term};
 pub use terms::{Terms, View};

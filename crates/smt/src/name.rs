@@ -47,11 +47,16 @@ impl Mangled {
                 c => text.push(c),
             }
         }
-        let simple = |c: char| c.is_ascii_alphanumeric() || "~!@$%^&*_-+=<>.?/".contains(c);
-        let quoted = !text.chars().all(simple) || text.starts_with(|c: char| c.is_ascii_digit() || c == '@');
-        let (quoted, word) = (quoted || text.is_empty(), is_word(&text));
+        let (quoted, word) = (!is_simple(&text) || text.starts_with('@'), is_word(&text));
         text.push('@');
         Mangled { text: text.into(), quoted, word }
+    }
+
+    /// The name that is written exactly so, where there is no time: of a text that was read.
+    pub(crate) fn verbatim(name: &str) -> Mangled {
+        const RESERVED: &[&str] = &["!", "_", "as", "exists", "forall", "let", "match", "par"];
+        let quoted = !is_simple(name) || name.starts_with(['@', '.']) || RESERVED.contains(&name);
+        Mangled { text: format!("{name}@").into(), quoted, word: false }
     }
 
     /// Writes it as a name that has no time: of a sort or a constructor.
@@ -69,6 +74,12 @@ impl Mangled {
     pub(crate) fn is_written(&self, text: &str) -> bool {
         text.strip_prefix('|').and_then(|text| text.strip_suffix('|')).unwrap_or(text) == self.timeless()
     }
+}
+
+/// Whether it is a symbol without quotes.
+fn is_simple(text: &str) -> bool {
+    let simple = |c: char| c.is_ascii_alphanumeric() || "~!@$%^&*_-+=<>.?/".contains(c);
+    !text.is_empty() && text.chars().all(simple) && !text.starts_with(|c: char| c.is_ascii_digit())
 }
 
 /// Whether SMT-LIB or a solver may have a meaning for the word.

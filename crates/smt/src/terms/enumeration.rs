@@ -16,8 +16,18 @@ impl Terms {
         let constructors: Vec<Mangled> =
             constructors.into_iter().map(|constructor| Mangled::new(constructor.as_ref())).collect();
         assert!(!constructors.is_empty(), "enumeration {name} has no constructors");
+        self.add_enumeration(Mangled::new(name), constructors)
+    }
+
+    /// A new enumeration that is written exactly so, with at least one constructor.
+    pub(crate) fn verbatim_enumeration(&mut self, name: &str, constructors: &[&str]) -> Enumeration {
+        let constructors = constructors.iter().map(|constructor| Mangled::verbatim(constructor)).collect();
+        self.add_enumeration(Mangled::verbatim(name), constructors)
+    }
+
+    fn add_enumeration(&mut self, name: Mangled, constructors: Vec<Mangled>) -> Enumeration {
         let number = u32::try_from(self.enumerations.len()).expect("fewer than 2^32 enumerations");
-        self.enumerations.push(EnumerationText { name: Mangled::new(name), constructors });
+        self.enumerations.push(EnumerationText { name, constructors });
         Enumeration(number)
     }
 

@@ -139,6 +139,13 @@ impl Terms {
         stem
     }
 
+    /// A stem of its own, whose symbol without a time is written exactly so.
+    pub(crate) fn verbatim_stem(&mut self, name: &str) -> Stem {
+        let stem = Stem(u32::try_from(self.stems.len()).expect("fewer than 2^32 stems"));
+        self.stems.push(StemText { text: name.into(), symbol: name::Mangled::verbatim(name) });
+        stem
+    }
+
     /// The text of a stem.
     #[must_use]
     pub fn stem_text(&self, stem: Stem) -> &str {

@@ -1,0 +1,99 @@
+//! Sorts, and small pieces of syntax.
+
+use super::commands::Reader;
+use super::lexer::Token;
+use super::{Trouble, shown};
+use crate::term::Sort;
+
+impl<'t> Reader<'t> {
+    /// The next token, which there has to be.
+    pub(super) fn token(&mut self) -> Result<(usize, Token<'t>), Trouble> {
+        let end = self.lexer.text().len();
+        self.lexer.next()?.ok_or_else(|| Trouble::syntax(end, "the text ends inside of a command"))
+    }
+
+    pub(super) fn open(&mut self) -> Result<usize, Trouble> {
+        match self.token()? {
+            (at, Token::Open) => Ok(at),
+            (at, _) => Err(Trouble::syntax(at, "( is missing")),
+        }
+    }
+
+    pub(super) fn close(&mut self) -> Result<(), Trouble> {
+        match self.token()? {
+            (_, Token::Close) => Ok(()),
+            (at, _) => Err(Trouble::syntax(at, ") is missing")),
+        }
+    }
+
+    /// A symbol that is no reserved word.
+    pub(super) fn name(&mut self) -> Result<(usize, &'t str), Trouble> {
+        let (at, token) = self.token()?;
+        match token {
+            Token::Quoted(name) => Ok((at, name)),
+            Token::Word(name) if !is_reserved(name) => Ok((at, name)),
+            _ => Err(Trouble::syntax(at, "a symbol is missing")),
+        }
+    }
+
+    /// An index of an indexed identifier, or the width of a sort.
+    pub(super) fn index(&mut self) -> Result<u32, Trouble> {
+        match self.token()? {
+            (at, Token::Number(digits)) => {
+                digits.parse().map_err(|_| Trouble::unsupported(at, shown(digits)))
+            }
+            (at, _) => Err(Trouble::syntax(at, "a number is missing")),
+        }
+    }
+
+    /// A sort.
+    pub(super) fn sort(&mut self) -> Result<Sort, Trouble> {
+        let (at, token) = self.token()?;
+        match token {
+            Token::Open => self.sort_of_width(at),
+            Token::Word(name) | Token::Quoted(name) => match self.sorts.get(name) {
+                Some(&sort) => Ok(sort),
+                None => Err(Trouble::unsupported(at, format!("sort {}", shown(name)))),
+            },
+            _ => Err(Trouble::syntax(at, "a sort is missing")),
+        }
+    }
+
+    /// `(_ BitVec n)`, once it is begun.
+    fn sort_of_width(&mut self, at: usize) -> Result<Sort, Trouble> {
+        let name = match self.token()? {
+            (_, Token::Word("_")) => self.name()?.1,
+            (_, Token::Word(name) | Token::Quoted(name)) => {
+                return Err(Trouble::unsupported(at, format!("sort {}", shown(name))));
+            }
+            (at, _) => return Err(Trouble::syntax(at, "a sort is missing")),
+        };
+        if name != "BitVec" {
+            return Err(Trouble::unsupported(at, format!("sort {}", shown(name))));
+        }
+        let width = self.index()?;
+        self.close()?;
+        if !(1..=128).contains(&width) {
+            return Err(Trouble::unsupported(at, format!("a bit-vector of {width} bits")));
+        }
+        Ok(Sort::BitVec(width))
+    }
+
+    /// Passes over everything up to the parenthesis that closes what is open.
+    pub(super) fn skip(&mut self) -> Result<(), Trouble> {
+        let mut depth = 1_usize;
+        while depth > 0 {
+            match self.token()?.1 {
+                Token::Open => depth += 1,
+                Token::Close => depth -= 1,
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether a word is no symbol.
+pub(super) fn is_reserved(word: &str) -> bool {
+    matches!(word, "!" | "_" | "as" | "exists" | "forall" | "let" | "match" | "par")
+}
