@@ -24,11 +24,12 @@ pub mod table;
 mod terminal;
 mod text;
 mod tree;
+mod witness;
 
 pub use judge::{Claim, Fault, Finding, Judgement, Kind, judge};
 pub use log::{Log, LogError, Past};
 pub use pool::{Event, Setting, prepare, run_all};
-pub use query::Query;
+pub use query::{Query, Request};
 pub use record::{Answer, Limit, Record, Status};
 pub use supervise::supervise;
 pub use text::one_line;

@@ -16,6 +16,7 @@ use crate::plan::{Kind, Run};
 use crate::query::Query;
 use crate::record::{Record, Status};
 use crate::supervise::{Job, Measured};
+use crate::witness;
 
 /// How often the flag of an interruption is looked at.
 const TICK: Duration = Duration::from_millis(100);
@@ -328,7 +329,10 @@ fn record(run: &Run, setting: &Setting, measured: &Measured, folders: &Folders) 
         past(limit.wall_s, measured.wall_s).then_some("wall time")
     };
     let outcome: Outcome = match &instance.kind {
-        Kind::Query(query) => outcome::of_query(measured, query, over.is_some()).sized(query),
+        Kind::Query(query) => {
+            let outcome = outcome::of_query(measured, query, over.is_some()).sized(query);
+            witness::checked(outcome, query, &instance.file, measured)
+        }
         Kind::Problem { .. } => {
             let said = outcome::of_problem(measured, over.is_some());
             // One that failed does not say what it asked.

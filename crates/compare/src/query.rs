@@ -9,6 +9,8 @@ pub struct Query {
     pub logic: Option<String>,
     /// Its checks in order, each with the `:status` said before it.
     pub checks: Vec<Option<Answer>>,
+    /// What it asks for of a model, after a check.
+    pub request: Request,
     /// Whether it takes a solver that can be asked again: assertions are taken back, or there are several checks.
     pub incremental: bool,
     /// Symbols that it declares.
@@ -17,6 +19,18 @@ pub struct Query {
     pub assertions: u64,
     /// Its length.
     pub bytes: u64,
+}
+
+/// What a file asks for of a model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Request {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// The values of some terms.
+    Values,
+    /// All of it.
+    Model,
 }
 
 impl Query {
@@ -95,6 +109,10 @@ impl Query {
             ["declare-fun" | "declare-const", ..] => self.variables += 1,
             ["assert", ..] => self.assertions += 1,
             ["push" | "pop" | "reset" | "reset-assertions", ..] => self.incremental = true,
+            ["get-model", ..] if !self.checks.is_empty() => self.request = Request::Model,
+            ["get-value", ..] if !self.checks.is_empty() && self.request == Request::Nothing => {
+                self.request = Request::Values;
+            }
             ["check-sat", ..] => self.checks.push(status.take()),
             ["check-sat-assuming", ..] => {
                 self.incremental = true;
@@ -154,6 +172,7 @@ mod tests {
         let expected = Query {
             logic: Some("QF_LIA".to_owned()),
             checks: vec![Some(Answer::Unsat)],
+            request: Request::Nothing,
             incremental: false,
             variables: 2,
             assertions: 2,
@@ -168,6 +187,14 @@ mod tests {
         let query = Query::scan(text);
         assert_eq!(query.checks, [None, Some(Answer::Sat), None]);
         assert!(query.incremental);
+    }
+
+    #[test]
+    fn a_model_is_asked_for_after_a_check() {
+        let request = |text: &str| Query::scan(text).request;
+        assert_eq!(request("(get-model)(check-sat)(get-info :name)"), Request::Nothing);
+        assert_eq!(request("(check-sat)(get-value (x))"), Request::Values);
+        assert_eq!(request("(check-sat)(get-model)(get-value (x))(exit)"), Request::Model);
     }
 
     #[test]

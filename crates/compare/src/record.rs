@@ -101,7 +101,8 @@ pub struct Record {
     pub status: Status,
     /// The right answer, where it is known.
     pub expected: Option<Answer>,
-    /// How the witness was checked (`by-search`, `by-solver`); of a query, `model`. `refuted` where it fails.
+    /// How the witness was checked (`by-search`, `by-solver`); of a query, `model`: it asked for the model, which was evaluated.
+    /// `refuted` where it fails.
     pub verified: Option<String>,
     /// Wall time, in seconds.
     pub wall_s: f64,
@@ -123,7 +124,8 @@ pub struct Record {
     pub assertions: Option<u64>,
     /// Bytes of the largest query, where it was written as text.
     pub bytes: Option<u64>,
-    /// The last thing that was said, where the run did not end with an answer.
+    /// The last thing that was said, where the run did not end with an answer; what is wrong with a model, or why it was not
+    /// checked.
     pub message: Option<String>,
     /// Where its queries are kept, relative to the log.
     pub queries: Option<String>,

@@ -87,6 +87,13 @@ pub(crate) struct Measured {
     pub(crate) stderr: String,
 }
 
+impl Measured {
+    /// Whether it may have written more to standard output than was kept.
+    pub(crate) fn is_cut(&self) -> bool {
+        self.stdout.len() >= KEPT
+    }
+}
+
 enum Event {
     Ended(Pid, WaitStatus, Instant),
     /// Nothing is left of the tree.

@@ -1,10 +1,8 @@
 //! `hyperplan solve`: verdicts, formats, exit statuses, files.
 
-#![allow(clippy::print_stderr, reason = "a skipped test says so")]
-
 mod common;
 
-use common::{command, hyperplan, text};
+use common::{command, hyperplan, solver_is_there, text};
 use std::io::{BufRead, BufReader};
 use std::process::Stdio;
 
@@ -265,15 +263,4 @@ fn external_solvers_agree() {
             );
         }
     }
-}
-
-/// Whether the solver is installed; a test without its solver says so, or fails where solvers are required.
-fn solver_is_there(name: &str) -> bool {
-    let found = hyperplan(&["solvers", "--format", "json"]).json();
-    let there = found.iter().any(|solver| solver["name"] == name && solver["path"].is_string());
-    if !there {
-        assert!(std::env::var_os("HYPERPLAN_REQUIRE_SOLVERS").is_none(), "{name} is required");
-        eprintln!("{name} is missing: skipped");
-    }
-    there
 }

@@ -119,3 +119,89 @@ fn what_is_written_is_read() {
         assert!(decided > 0, "seed {seed}");
     }
 }
+
+/// Pieces of texts put together at random: whatever comes of it, it is no panic.
+#[test]
+fn nothing_makes_the_reader_panic() {
+    const PIECES: &[&str] = &[
+        "(",
+        ")",
+        "(",
+        ")",
+        "(let ((x ",
+        "(assert ",
+        "(_ ",
+        "((_ extract 4 0) ",
+        "((_ repeat 9) ",
+        "(_ bv7 3)",
+        "#b101",
+        "#x0",
+        "7",
+        "2.50",
+        "x",
+        "and",
+        "=",
+        "(= ",
+        "(- ",
+        "(* ",
+        "(div ",
+        "(/ ",
+        "0",
+        "true",
+        "(forall ((x Int)) ",
+        "(! ",
+        ":named y",
+        "(define-fun f ((x Int) (p Bool)) Int ",
+        "(f ",
+        "Bool",
+        "Int",
+        "(declare-const z ",
+        "(bvshl ",
+        "(concat ",
+        "(distinct ",
+        "(ite ",
+        "(declare-datatypes ((E 0)) (((a) (b))))",
+        "((_ is a) ",
+        "(as a E)",
+        "|",
+        "\"",
+        ";",
+        "\n",
+        "\u{e9}",
+        "-1",
+        "170141183460469231731687303715884105727",
+        "((_ sign_extend 4294967295) ",
+        "((_ rotate_left 7) ",
+        "(abs ",
+    ];
+    for seed in 0..3000 {
+        let mut random = Random(seed);
+        let mut text = if random.below(2) == 0 {
+            "(declare-const x Int)(declare-const p Bool)(declare-const v (_ BitVec 3))(assert ".to_owned()
+        } else {
+            let script = script(&mut random);
+            let mut text = Vec::new();
+            write_script(&mut text, &script, &WriteOptions::default()).expect("vectors can be written to");
+            String::from_utf8(text).expect("all names are text")
+        };
+        for _ in 0..1 + random.below(6) {
+            let mut at = random.below(text.len() + 1);
+            while !text.is_char_boundary(at) {
+                at -= 1;
+            }
+            let mut end = (at + random.below(4)).min(text.len());
+            while !text.is_char_boundary(end) {
+                end += 1;
+            }
+            let pieces: Vec<&str> =
+                (0..random.below(12)).map(|_| PIECES[random.below(PIECES.len())]).collect();
+            if random.below(2) == 0 {
+                text.push_str(&pieces.join(" "));
+            } else {
+                text.replace_range(at..end, &pieces.concat());
+            }
+        }
+        let read = std::panic::catch_unwind(|| read_script(&text).map(|read| read.assertions));
+        assert!(read.is_ok(), "seed {seed}\n{text}");
+    }
+}

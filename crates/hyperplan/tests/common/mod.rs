@@ -7,6 +7,7 @@ pub(crate) mod fakes;
 
 pub(crate) mod compare;
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
@@ -53,4 +54,15 @@ pub(crate) fn specs() -> PathBuf {
 /// A path as an argument.
 pub(crate) fn text(path: &Path) -> &str {
     path.to_str().expect("temporary folders have plain names")
+}
+
+/// Whether the solver is installed; a test without its solver says so, or fails where solvers are required.
+pub(crate) fn solver_is_there(name: &str) -> bool {
+    let found = hyperplan(&["solvers", "--format", "json"]).json();
+    let there = found.iter().any(|solver| solver["name"] == name && solver["path"].is_string());
+    if !there {
+        assert!(std::env::var_os("HYPERPLAN_REQUIRE_SOLVERS").is_none(), "{name} is required");
+        let _ = writeln!(std::io::stderr(), "{name} is missing: skipped");
+    }
+    there
 }

@@ -1,0 +1,153 @@
+//! Whether a model that a solver printed satisfies its query: by evaluation, without any solver.
+
+use std::fs;
+
+use hyperplan_smt::{Benchmark, Model, ReadError, check_partial_model, read_script, symbol_text};
+use hyperplan_solver::{PrintedModel, PrintedModelError};
+
+use crate::outcome::Outcome;
+use crate::query::{Query, Request};
+use crate::record::Status;
+use crate::supervise::Measured;
+
+/// What became of a model.
+#[derive(Debug, PartialEq)]
+enum Verdict {
+    /// All assertions are true.
+    Holds,
+    /// An assertion is false.
+    Fails(String),
+    /// Nobody knows, and why.
+    Unchecked(String),
+}
+
+/// The outcome of a query, with what its model is worth where one was asked for.
+pub(crate) fn checked(outcome: Outcome, query: &Query, file: &str, measured: &Measured) -> Outcome {
+    if outcome.status != Status::Sat || query.checks.len() != 1 || query.request == Request::Nothing {
+        return outcome;
+    }
+    let (verified, message) = match verdict(query.request, file, measured) {
+        Verdict::Holds => (Some("model"), None),
+        Verdict::Fails(why) => (Some("refuted"), Some(format!("wrong model: {why}"))),
+        Verdict::Unchecked(why) => (None, Some(format!("model not checked: {why}"))),
+    };
+    Outcome { verified: verified.map(str::to_owned), message: message.or(outcome.message), ..outcome }
+}
+
+fn verdict(request: Request, file: &str, measured: &Measured) -> Verdict {
+    if measured.is_cut() {
+        return Verdict::Unchecked("it is too long".to_owned());
+    }
+    // Before the file is: it may be long.
+    let printed = match PrintedModel::read(&measured.stdout) {
+        Ok(printed) => printed,
+        Err(PrintedModelError::Empty) => return Verdict::Unchecked("none was printed".to_owned()),
+        Err(error) => return Verdict::Unchecked(error.to_string()),
+    };
+    match fs::read(file) {
+        Ok(bytes) => of_model(request, &String::from_utf8_lossy(&bytes), &printed),
+        Err(error) => Verdict::Unchecked(format!("{file}: {error}")),
+    }
+}
+
+/// What a printed model of a text is.
+fn of_model(request: Request, text: &str, printed: &PrintedModel) -> Verdict {
+    let benchmark = match read_script(text) {
+        Ok(benchmark) => benchmark,
+        Err(ReadError::Syntax { what, line, .. } | ReadError::Unsupported { what, line, .. }) => {
+            return Verdict::Unchecked(format!("{what} on line {line}"));
+        }
+    };
+    let (model, gap) = values(&benchmark, printed);
+    let check = check_partial_model(&benchmark.script, &model);
+    if let Some(origin) = check.violated.and_then(|violated| benchmark.origins.get(violated)) {
+        let (number, line, all) = (origin.number, origin.line, benchmark.assertions);
+        return Verdict::Fails(format!("assertion {number} of {all} (line {line}) is false"));
+    }
+    match gap {
+        // A model that was asked for as a whole has to define all symbols, whether or not they matter.
+        Some(gap) if check.unknown > 0 || request == Request::Model => Verdict::Unchecked(gap),
+        _ if check.unknown > 0 => {
+            let (unknown, all) = (check.unknown, benchmark.assertions);
+            let script = &benchmark.script;
+            let quantified = script.literals(0).iter().any(|&t| script.terms.is_quantified(t));
+            let why = if quantified { "quantifiers" } else { "large numbers" };
+            Verdict::Unchecked(format!("{unknown} of {all} assertions cannot be evaluated ({why})"))
+        }
+        _ => Verdict::Holds,
+    }
+}
+
+/// What the declared symbols are, and what the first is missing that has no value.
+fn values(benchmark: &Benchmark, printed: &PrintedModel) -> (Model, Option<String>) {
+    let terms = &benchmark.script.terms;
+    let (mut model, mut gap) = (Model::new(), None);
+    for &symbol in &benchmark.symbols {
+        match printed.value(terms, symbol) {
+            Ok(Some(value)) => model.insert(symbol, value),
+            Ok(None) => gap = gap.or_else(|| Some(format!("no value for {}", symbol_text(terms, symbol)))),
+            Err(error) => gap = gap.or_else(|| Some(error.to_string())),
+        }
+    }
+    (model, gap)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "(declare-const x Int)(declare-const |y z| Bool)(declare-const unused Bool)\n\
+                        (assert true)\n(assert (or |y z| (< x 3)))\n(assert (not (= x 2)))\n(check-sat)";
+
+    fn of(request: Request, text: &str, output: &str) -> Verdict {
+        let stdout = format!("sat\n{output}");
+        match PrintedModel::read(&stdout) {
+            Ok(printed) => of_model(request, text, &printed),
+            Err(error) => panic!("{error}"),
+        }
+    }
+
+    #[test]
+    fn models_as_a_whole() {
+        let define = |x: &str, y: &str| {
+            format!(
+                "((define-fun x () Int {x}) (define-fun |y z| () Bool {y}) (define-fun unused () Bool true))"
+            )
+        };
+        let of = |output: &str| of(Request::Model, TEXT, output);
+        assert_eq!(of(&define("(- 1)", "false")), Verdict::Holds);
+        assert_eq!(of(&define("5", "true")), Verdict::Holds);
+        let fails = |text: &str| Verdict::Fails(text.to_owned());
+        assert_eq!(of(&define("5", "false")), fails("assertion 2 of 3 (line 3) is false"));
+        assert_eq!(of(&define("2", "false")), fails("assertion 3 of 3 (line 4) is false"));
+        let unchecked = |text: &str| Verdict::Unchecked(text.to_owned());
+        assert_eq!(of("((define-fun x () Int 1))"), unchecked("no value for |y z|"));
+        // Whatever the missing values are.
+        assert_eq!(of("((define-fun x () Int 2))"), fails("assertion 3 of 3 (line 4) is false"));
+        let strange = of(&define("(f 1)", "true"));
+        assert_eq!(strange, unchecked("the value of x cannot be read: (f 1)"));
+    }
+
+    #[test]
+    fn models_in_part() {
+        let of = |output: &str| of(Request::Values, TEXT, output);
+        assert_eq!(of("((x 1))"), Verdict::Holds);
+        assert_eq!(of("((|y z| true) (x 3))"), Verdict::Holds);
+        assert_eq!(of("((|y z| true))"), Verdict::Unchecked("no value for x".to_owned()));
+        assert_eq!(of("((x 2))"), Verdict::Fails("assertion 3 of 3 (line 4) is false".to_owned()));
+    }
+
+    #[test]
+    fn what_cannot_be_evaluated() {
+        let of = |text: &str| of(Request::Model, text, "()");
+        let unchecked = |text: &str| Verdict::Unchecked(text.to_owned());
+        assert_eq!(of("(push 1)(check-sat)"), unchecked("push on line 1"));
+        assert_eq!(of("(assert\n(and))"), unchecked("arguments are missing on line 2"));
+        let text = "(assert (forall ((x Int)) (< x 1)))(assert true)(check-sat)";
+        assert_eq!(of(text), unchecked("1 of 2 assertions cannot be evaluated (quantifiers)"));
+        assert_eq!(
+            of("(assert (forall ((x Int)) (< x 1)))(assert (= 1 2))"),
+            Verdict::Fails("assertion 2 of 2 (line 1) is false".to_owned())
+        );
+    }
+}
