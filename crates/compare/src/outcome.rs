@@ -30,7 +30,7 @@ pub(crate) struct Outcome {
 }
 
 impl Outcome {
-    fn new(status: Status, message: Option<String>) -> Outcome {
+    pub(crate) fn new(status: Status, message: Option<String>) -> Outcome {
         Outcome {
             status,
             expected: None,

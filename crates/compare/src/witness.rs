@@ -150,4 +150,20 @@ mod tests {
             Verdict::Fails("assertion 2 of 2 (line 1) is false".to_owned())
         );
     }
+
+    #[test]
+    fn what_was_cut_off_is_not_checked() {
+        let mut stdout = "sat\n((x 2))".to_owned();
+        let of = |stdout: String| {
+            let outcome = crate::outcome::Outcome::new(Status::Sat, None);
+            let query = Query { checks: vec![None], request: Request::Values, ..Query::default() };
+            checked(outcome, &query, "no-such-file", &Measured { stdout, ..Measured::default() })
+        };
+        let missing = of(stdout.clone());
+        assert!(missing.message.is_some_and(|message| message.contains("no-such-file: ")));
+        stdout.extend(std::iter::repeat_n(' ', 64 << 20));
+        let cut = of(stdout);
+        assert_eq!((cut.status, cut.verified), (Status::Sat, None));
+        assert_eq!(cut.message.as_deref(), Some("model not checked: it is too long"));
+    }
 }

@@ -27,7 +27,7 @@ pub(super) struct Reader<'t> {
     checked: bool,
     /// How many variables were bound.
     variables: u32,
-    /// How much macros were expanded.
+    /// How much of the bodies of macros was looked at.
     pub(super) expanded: usize,
     /// A place and its line.
     line: (usize, usize),
@@ -168,7 +168,10 @@ impl<'t> Reader<'t> {
         if parameters.is_empty() {
             return self.known(at, name, Meaning::Term(body));
         }
-        self.macros.push(Macro::new(&self.script.terms, parameters, body));
+        let definition = Macro::new(&self.script.terms, parameters, body);
+        self.expanded += definition.size();
+        self.check_room(at, 0)?;
+        self.macros.push(definition);
         self.known(at, name, Meaning::Macro(self.macros.len() - 1))
     }
 

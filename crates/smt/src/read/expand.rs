@@ -30,9 +30,15 @@ impl Macro {
                 }
             }
         }
-        nodes.retain(|t| terms.is_quantified(*t) && !parameters.contains(t));
+        // What is a variable stays what it is, unless it is a parameter.
+        nodes.retain(|t| terms.is_quantified(*t) && terms.op(*t) != Op::Bound);
         nodes.sort_unstable();
         Macro { parameters, body, nodes }
+    }
+
+    /// How much of the body can depend on the parameters.
+    pub(super) fn size(&self) -> usize {
+        self.nodes.len()
     }
 }
 
