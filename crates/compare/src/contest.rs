@@ -322,13 +322,16 @@ fn contestants(identities: &[Identity<'_>]) -> Vec<Contestant> {
     for (solver, _, _, version, _) in identities {
         solvers.entry(solver).or_default().insert(*version);
     }
-    // A choice is worth saying if it was not the same for everyone.
-    let quantifiers_vary = identities.iter().map(|who| who.1).collect::<BTreeSet<_>>().len() > 1;
-    let states_vary = identities.iter().map(|who| who.2).collect::<BTreeSet<_>>().len() > 1;
-    let options_vary = identities.iter().map(|who| who.4).collect::<BTreeSet<_>>().len() > 1;
+    // A choice is worth saying if it was not the same for everyone who had it: solvers that got a query by themselves had none.
+    let problems: Vec<&Identity<'_>> = identities.iter().filter(|who| who.1.is_some()).collect();
+    let quantifiers_vary = problems.iter().map(|who| who.1).collect::<BTreeSet<_>>().len() > 1;
+    let states_vary = problems.iter().map(|who| who.2).collect::<BTreeSet<_>>().len() > 1;
+    let options_vary = problems.iter().map(|who| who.4).collect::<BTreeSet<_>>().len() > 1;
+    let both = !problems.is_empty() && problems.len() < identities.len();
     let label = |who: &Identity<'_>| {
         let (solver, quantifiers, states, version, options) = *who;
-        let mut label = solver.to_owned();
+        let with_hyperplan = both && quantifiers.is_some();
+        let mut label = if with_hyperplan { format!("hyperplan {solver}") } else { solver.to_owned() };
         if solvers[solver].len() > 1 {
             label = format!("{label} {}", version.unwrap_or("(version unknown)"));
         }

@@ -207,3 +207,18 @@ fn ten_thousand_records_are_fast() {
     hyperplan_compare::report::write_all(&records, dir.path()).expect("a folder that can be written");
     assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
 }
+
+#[test]
+fn solvers_by_themselves_are_told_from_those_that_hyperplan_asks() {
+    let problem = |solver: &str| run(solver, "a.hp#o", Status::Sat, 1.0);
+    let query =
+        |solver: &str| Record { quantifiers: None, states: None, ..run(solver, "a.smt2", Status::Sat, 1.0) };
+    let names = |records: &[Record]| -> Vec<String> {
+        Contest::new(records).contestants.into_iter().map(|contestant| contestant.label).collect()
+    };
+    assert_eq!(names(&[problem("z3"), query("z3")]), ["z3", "hyperplan z3"]);
+    assert_eq!(names(&[problem("z3"), problem("cvc5")]), ["cvc5", "z3"]);
+    assert_eq!(names(&[query("z3"), query("cvc5")]), ["cvc5", "z3"]);
+    let keep = Record { quantifiers: Some("keep".to_owned()), ..problem("z3") };
+    assert_eq!(names(&[problem("z3"), keep, query("z3")]), ["z3", "hyperplan z3 auto", "hyperplan z3 keep"]);
+}
