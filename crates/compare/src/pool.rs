@@ -164,10 +164,10 @@ fn one(run: &Run, setting: &Setting, lifelines: &Lifelines) -> io::Result<Option
     let folders = Folders::new(run, setting)?;
     let measured = match &run.instance.kind {
         Kind::Query(query) => {
-            let scrubbed = folders.scrubbed(&run.instance.file)?;
-            let file = scrubbed.as_deref().unwrap_or(&run.instance.file);
+            let copy = folders.copy(run)?;
+            let file = copy.as_deref().unwrap_or(&run.instance.file);
             let measured = measure(&query_job(run, query, file, &folders), setting, lifelines);
-            scrubbed.as_deref().map(fs::remove_file).transpose()?;
+            copy.as_deref().map(fs::remove_file).transpose()?;
             measured
         }
         Kind::Problem { objective } => {
@@ -235,13 +235,19 @@ impl Folders {
         Ok(folders)
     }
 
-    /// A copy of a query that says nothing of its status; `None` where it says nothing anyway.
-    fn scrubbed(&self, file: &str) -> io::Result<Option<String>> {
+    /// A copy of a query that says nothing of its status, and sets the seed; `None` where the file can serve itself.
+    fn copy(&self, run: &Run) -> io::Result<Option<String>> {
+        let file = Path::new(&run.instance.file);
         // What cannot be read is told of by the run.
-        let bytes = fs::read(file).unwrap_or_default();
-        let Some(text) = Query::without_status(&bytes) else { return Ok(None) };
-        let copy =
-            Path::new(&self.full(&self.temporary)).join(Path::new(file).file_name().unwrap_or_default());
+        let Ok(bytes) = fs::read(file) else { return Ok(None) };
+        let standalone = run.solver.standalone.as_ref().filter(|_| run.seed != 0);
+        let seed = standalone.and_then(|standalone| standalone.seed(run.seed));
+        let without = Query::without_status(&bytes);
+        if seed.is_none() && without.is_none() {
+            return Ok(None);
+        }
+        let copy = Path::new(&self.full(&self.temporary)).join(file.file_name().unwrap_or_default());
+        let text = [seed.unwrap_or_default().into_bytes(), without.unwrap_or(bytes)].concat();
         fs::write(&copy, text)?;
         Ok(Some(copy.display().to_string()))
     }
@@ -297,7 +303,6 @@ fn problem_job(run: &Run, objective: &str, setting: &Setting, folders: &Folders)
         program: setting.hyperplan.display().to_string(),
         arguments,
         temporary: folders.full(&folders.temporary),
-        prefix: String::new(),
         input: None,
         limit: run.limit,
         grace_s: GRACE,
@@ -308,12 +313,10 @@ fn query_job(run: &Run, query: &Query, file: &str, folders: &Folders) -> Job {
     let standalone = run.solver.standalone.as_ref();
     let (arguments, from_input) =
         standalone.map_or_else(Default::default, |standalone| standalone.arguments(file, query.incremental));
-    let seed = standalone.filter(|_| run.seed != 0).and_then(|standalone| standalone.seed(run.seed));
     Job {
         program: standalone.map_or_else(String::new, |standalone| standalone.program.display().to_string()),
         arguments,
         temporary: folders.full(&folders.temporary),
-        prefix: seed.unwrap_or_default(),
         input: from_input.then(|| file.to_owned()),
         limit: run.limit,
         grace_s: 0.0,

@@ -14,7 +14,7 @@
 use std::fs::File;
 use std::io::{self, BufRead as _, Read, Write as _};
 use std::os::unix::process::CommandExt as _;
-use std::process::{ChildStdin, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
@@ -45,9 +45,7 @@ pub(crate) struct Job {
     pub(crate) arguments: Vec<String>,
     /// Where it puts temporary files.
     pub(crate) temporary: String,
-    /// What it reads first.
-    pub(crate) prefix: String,
-    /// The file that it reads then.
+    /// The file that is its standard input.
     pub(crate) input: Option<String>,
     /// Its limits.
     pub(crate) limit: Limit,
@@ -149,7 +147,7 @@ impl Supervised {
         let input = job.input.as_ref().map(File::open).transpose()?;
         let mut command = Command::new(&job.program);
         command.args(&job.arguments).env("TMPDIR", &job.temporary).process_group(0);
-        command.stdin(if input.is_some() { Stdio::piped() } else { Stdio::null() });
+        command.stdin(input.map_or_else(Stdio::null, Stdio::from));
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
         hyperplan_solver::end_with_parent(&mut command);
         let inherited = tree::own_peak();
@@ -160,10 +158,6 @@ impl Supervised {
         let none = || io::Error::other("a process without its pipes");
         let stdout = child.stdout.take().ok_or_else(none)?;
         let stderr = child.stderr.take().ok_or_else(none)?;
-        if let (Some(stdin), Some(input)) = (child.stdin.take(), input) {
-            let prefix = job.prefix.clone();
-            thread::Builder::new().name("input".into()).spawn(move || feed(stdin, &prefix, input))?;
-        }
         let stdout = thread::Builder::new().name("output".into()).spawn(move || head(stdout))?;
         let stderr = thread::Builder::new().name("errors".into()).spawn(move || tail(stderr))?;
         thread::Builder::new().name("reaper".into()).spawn(move || reap(&sender))?;
@@ -266,11 +260,6 @@ fn reap(sender: &Sender<Event>) {
             return;
         }
     }
-}
-
-/// Writes what the program reads. It need not read all of it.
-fn feed(mut stdin: ChildStdin, prefix: &str, mut input: File) {
-    let _ = stdin.write_all(prefix.as_bytes()).and_then(|()| io::copy(&mut input, &mut stdin).map(|_| ()));
 }
 
 /// The beginning of what comes; the rest is read and forgotten.

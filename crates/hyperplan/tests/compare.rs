@@ -5,7 +5,7 @@ mod common;
 
 use common::compare::Comparison;
 use common::fakes::{FALSE, Fake};
-use common::{specs, text};
+use common::{Run, specs, text};
 use std::fs;
 
 const ANSWER: &str = "cat > /dev/null; echo";
@@ -163,6 +163,35 @@ fn disagreements_come_first() {
     let again = comparison.run(&[text(&files), &solvers]);
     assert_eq!((again.status, again.stdout), (4, run.stdout));
     assert_eq!(sat.begun(), 2);
+}
+
+#[test]
+fn solvers_get_files_with_the_seed_and_without_the_status() {
+    let comparison = Comparison::new();
+    let files = comparison.queries(0);
+    let query = "(set-info :status sat) (declare-const x Bool)\n(assert x) (check-sat)\n";
+    fs::write(files.join("a.smt2"), query).expect("ours");
+    let kept = comparison.folder().join("got");
+    // z3 gets its query as a file, yices on its standard input.
+    let solver = |name: &str, file: &str| {
+        let kept = kept.display();
+        let body =
+            format!("[ \"$1\" = --version ] && echo {name} 1.0 || {{ cat {file} >> '{kept}'; echo sat; }}");
+        Fake::called(name, &body)
+    };
+    let (z3, yices) = (solver("z3", "\"$1\""), solver("yices-smt2", ""));
+    let mut command = comparison.command(&[text(&files), "--solver=z3,yices", "--seed=0,7"]);
+    command.env("HYPERPLAN_Z3", z3.program()).env("HYPERPLAN_YICES", yices.program());
+    let run = Run::new(command.output().expect("the command was built for this test"));
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    let without = query.replace("(set-info :status sat)", &" ".repeat("(set-info :status sat)".len()));
+    let seeded = format!("(set-option :random-seed 7)\n{without}");
+    assert_eq!(
+        fs::read_to_string(&kept).expect("it was written"),
+        [&without[..], &without, &seeded, &seeded].concat()
+    );
+    assert_eq!(fs::read_to_string(files.join("a.smt2")).expect("ours"), query);
+    assert!(!comparison.out().join("evidence").exists());
 }
 
 #[test]

@@ -197,6 +197,8 @@ impl Entry {
             }
             None => base.program,
         };
+        // Who changes the arguments means all of them.
+        let inherited = base.one_shot.filter(|_| self.arguments.is_none());
         let arguments = self.arguments.unwrap_or(base.arguments);
         if arguments.iter().any(|argument| argument.contains(FILE)) {
             let what = format!(
@@ -210,7 +212,7 @@ impl Entry {
             aliases: self.aliases.unwrap_or(base.aliases),
             program,
             arguments,
-            one_shot: self.one_shot.or(base.one_shot),
+            one_shot: self.one_shot.or(inherited),
             incremental: self.incremental.unwrap_or(base.incremental),
             assumptions: self.assumptions.unwrap_or(base.assumptions),
             setup: self.setup.unwrap_or(base.setup),

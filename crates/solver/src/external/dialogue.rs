@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use hyperplan_smt::{Features, Op, Printer, Script, Term, Value};
 
-use super::exchange::{Exchange, VERSION};
+use super::exchange::{Exchange, REASON, VERSION};
 use super::facts::Facts;
 use super::one_shot::OneShot;
 use super::profile::{Assumptions, Profile};
@@ -254,7 +254,8 @@ impl Dialogue {
         let answer = match running.exchange.answer(deadline)? {
             None => return Ok(Answer::Unknown(deadline.reason().to_owned())),
             Some(Answer::Unknown(reason)) if reason == "unknown" => {
-                Answer::Unknown(running.exchange.reason(deadline))
+                running.exchange.send(REASON.to_vec(), deadline);
+                Answer::Unknown(running.exchange.reason(0, deadline))
             }
             Some(answer) => answer,
         };

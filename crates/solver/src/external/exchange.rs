@@ -15,6 +15,9 @@ use crate::transcript::Transcript;
 /// How long a solver that gave up may take to say why.
 const PATIENCE: Duration = Duration::from_secs(1);
 
+/// Asks why the answer is not known.
+pub(super) const REASON: &[u8] = b"(get-info :reason-unknown)\n";
+
 /// Asks for the version.
 pub(super) const VERSION: &[u8] = b"(get-info :version)\n";
 
@@ -136,10 +139,13 @@ impl Exchange {
         }
     }
 
-    /// Why the solver said unknown; a solver that does not say so soon is not waited for, and not asked any more.
-    pub(super) fn reason(&mut self, deadline: &Deadline) -> String {
+    /// Why the solver said unknown, in the reply to [`REASON`] after so many that do not matter. A solver that does not say
+    /// so soon is not waited for, and not asked any more.
+    pub(super) fn reason(&mut self, after: usize, deadline: &Deadline) -> String {
         let deadline = deadline.within(PATIENCE);
-        self.send(b"(get-info :reason-unknown)\n".to_vec(), &deadline);
+        for _ in 0..after {
+            self.next(&deadline);
+        }
         let reason = match self.next(&deadline) {
             Next::Reply(reply) => reply::reason(&reply),
             Next::Ended | Next::Deadline => None,

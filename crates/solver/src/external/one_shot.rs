@@ -7,7 +7,7 @@ use hyperplan_smt::{Op, Printer, Script, Term, Value};
 use tempfile::NamedTempFile;
 
 use super::dialogue::{ASK, get_value, negate, out_of_memory};
-use super::exchange::Exchange;
+use super::exchange::{Exchange, REASON, VERSION};
 use super::profile::FILE;
 use super::program::Program;
 use super::watchdog;
@@ -15,8 +15,8 @@ use crate::deadline::Deadline;
 use crate::error::Error;
 use crate::session::{Answer, Identity, Options, Session, Told};
 
-/// Writes each query into a temporary file, with the questions for all values after the check, since there is no
-/// asking later. What a solver says to these after `unsat` does not matter.
+/// Writes each query into a temporary file, with all questions after the check, since there is no asking later: the
+/// version, all values, why the answer is not known. What a solver says to those that do not fit its answer does not matter.
 pub(super) struct OneShot {
     program: Program,
     options: Options,
@@ -42,15 +42,24 @@ impl OneShot {
         let Some(answer) = exchange.answer(deadline)? else {
             return Ok(Answer::Unknown(deadline.reason().to_owned()));
         };
-        if answer == Answer::Sat {
-            let mut model = BTreeMap::new();
-            for asked in symbols.chunks(ASK) {
-                let values = exchange.values(script, asked, deadline)?;
-                model.extend(asked.iter().copied().zip(values));
-            }
-            self.model = Some(model);
+        if self.program.is_to_tell_version() {
+            self.program.version.learn(&exchange.version(deadline).unwrap_or_default());
         }
-        Ok(answer)
+        match answer {
+            Answer::Sat => {
+                let mut model = BTreeMap::new();
+                for asked in symbols.chunks(ASK) {
+                    let values = exchange.values(script, asked, deadline)?;
+                    model.extend(asked.iter().copied().zip(values));
+                }
+                self.model = Some(model);
+                Ok(Answer::Sat)
+            }
+            Answer::Unknown(reason) if reason == "unknown" => {
+                Ok(Answer::Unknown(exchange.reason(symbols.chunks(ASK).len(), deadline)))
+            }
+            answer => Ok(answer),
+        }
     }
 
     /// The query, and the symbols that it asks about.
@@ -67,6 +76,9 @@ impl OneShot {
             let _ = printer.assertion(&mut text, terms, literals);
         }
         text.extend_from_slice(b"(check-sat)\n");
+        if self.program.is_to_tell_version() {
+            text.extend_from_slice(VERSION);
+        }
         let known = |t: &Term| terms.op(*t) == Op::Symbol && printer.is_declared(*t);
         let symbols: Vec<Term> = terms.iter().filter(known).collect();
         let (clauses, variables, bytes) = (script.len(), symbols.len(), text.len());
@@ -74,6 +86,8 @@ impl OneShot {
         for asked in symbols.chunks(ASK) {
             text.extend_from_slice(&get_value(&printer, script, asked));
         }
+        // Last, since some end at the error that it may be.
+        text.extend_from_slice(REASON);
         Ok((text, symbols))
     }
 }

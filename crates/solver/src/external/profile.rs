@@ -22,7 +22,8 @@ pub struct Profile {
     pub(crate) program: String,
     /// Arguments of a dialogue.
     pub(crate) arguments: Vec<String>,
-    /// Arguments of a process that answers one check: where there are quantifiers, or no dialogue is possible.
+    /// Arguments of a process that answers one check: where no more are asked, there are quantifiers, or no dialogue is
+    /// possible.
     /// [`FILE`] among them stands for the path of a file with the query, which else comes on standard input.
     pub(crate) one_shot: Option<Vec<String>>,
     /// Whether a process answers more than one check.

@@ -28,7 +28,8 @@ impl Program {
         let (path, tried) = locate(profile);
         let hint = || format!("{}; or set {}", profile.install, profile.variable());
         let path = path.ok_or_else(|| Error::Missing { name: profile.name.clone(), tried, hint: hint() })?;
-        let one_shot = !profile.incremental || options.quantifiers() > Quantifiers::None;
+        let one_shot =
+            !profile.incremental || !options.incremental || options.quantifiers() > Quantifiers::None;
         let one_shot = profile.one_shot.as_ref().filter(|_| one_shot);
         Ok(Program {
             name: profile.name.clone(),
