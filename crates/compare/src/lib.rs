@@ -6,6 +6,7 @@
 
 pub mod benchexec;
 pub mod contest;
+mod folders;
 mod html;
 mod judge;
 mod latex;

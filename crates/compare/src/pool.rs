@@ -11,6 +11,7 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
+use crate::folders::{self, Folders};
 use crate::outcome::{self, Outcome};
 use crate::plan::{Kind, Run};
 use crate::query::Query;
@@ -22,8 +23,6 @@ use crate::witness;
 const TICK: Duration = Duration::from_millis(100);
 /// How long hyperplan may take to end by itself when its time is over.
 const GRACE: f64 = 2.0;
-/// The folder for what runs leave that went wrong.
-const EVIDENCE: &str = "evidence";
 
 /// How runs are done.
 #[derive(Clone, Debug)]
@@ -63,8 +62,7 @@ pub fn run_all<E: From<io::Error> + Send>(
     mut tell: impl FnMut(Event<'_>) -> Result<(), E>,
 ) -> Result<bool, E> {
     let outcome = work(runs, setting, cancelled, &mut tell);
-    // Unless there is evidence in it.
-    let _ = fs::remove_dir(setting.folder.join(EVIDENCE));
+    folders::remove_if_empty(&setting.folder);
     outcome
 }
 
@@ -161,7 +159,7 @@ impl Lifelines {
 
 /// Does one run; `None` where it was interrupted.
 fn one(run: &Run, setting: &Setting, lifelines: &Lifelines) -> io::Result<Option<Record>> {
-    let folders = Folders::new(run, setting)?;
+    let folders = Folders::new(run, &setting.folder, setting.queries)?;
     let measured = match &run.instance.kind {
         Kind::Query(query) => {
             let copy = folders.copy(run)?;
@@ -204,76 +202,6 @@ fn measure(job: &Job, setting: &Setting, lifelines: &Lifelines) -> io::Result<Op
         Ok(measured) => Ok(Some(measured)),
         Err(_) if lifelines.are_cut() => Ok(None),
         Err(_) => Err(io::Error::other(format!("the process that measures a run ended: {}", status?))),
-    }
-}
-
-/// Folders of a run, relative to that of the comparison.
-struct Folders {
-    base: PathBuf,
-    /// Where its queries are kept.
-    queries: Option<String>,
-    /// For temporary files, which are kept where something went wrong: there may be evidence among them.
-    temporary: String,
-}
-
-impl Folders {
-    fn new(run: &Run, setting: &Setting) -> io::Result<Folders> {
-        let problem = matches!(run.instance.kind, Kind::Problem { .. });
-        let folders = Folders {
-            base: setting.folder.clone(),
-            queries: (setting.queries && problem).then(|| format!("queries/{}", run.key)),
-            temporary: format!("{EVIDENCE}/{}", run.key),
-        };
-        // Of a run that was interrupted.
-        for folder in folders.queries.iter().chain([&folders.temporary]) {
-            match fs::remove_dir_all(folders.base.join(folder)) {
-                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
-                _ => {}
-            }
-            fs::create_dir_all(folders.base.join(folder))?;
-        }
-        Ok(folders)
-    }
-
-    /// A copy of a query that says nothing of its status, and sets the seed; `None` where the file can serve itself.
-    fn copy(&self, run: &Run) -> io::Result<Option<String>> {
-        let file = Path::new(&run.instance.file);
-        // What cannot be read is told of by the run.
-        let Ok(bytes) = fs::read(file) else { return Ok(None) };
-        let standalone = run.solver.standalone.as_ref().filter(|_| run.seed != 0);
-        let seed = standalone.and_then(|standalone| standalone.seed(run.seed));
-        let without = Query::without_status(&bytes);
-        if seed.is_none() && without.is_none() {
-            return Ok(None);
-        }
-        let copy = Path::new(&self.full(&self.temporary)).join(file.file_name().unwrap_or_default());
-        let text = [seed.unwrap_or_default().into_bytes(), without.unwrap_or(bytes)].concat();
-        fs::write(&copy, text)?;
-        Ok(Some(copy.display().to_string()))
-    }
-
-    fn full(&self, folder: &str) -> String {
-        self.base.join(folder).display().to_string()
-    }
-
-    /// Removes temporary files, unless they are to be kept.
-    fn tidy(&self, keep: bool) -> io::Result<()> {
-        let temporary = self.base.join(&self.temporary);
-        if !keep {
-            fs::remove_dir_all(&temporary)?;
-        }
-        // Where it is empty.
-        let _ = fs::remove_dir(&temporary);
-        Ok(())
-    }
-
-    /// The largest query that was kept.
-    fn largest(&self) -> Option<Query> {
-        let folder = self.base.join(self.queries.as_ref()?);
-        let files = fs::read_dir(folder).ok()?.flatten();
-        let sized = files.filter_map(|file| Some((file.metadata().ok()?.len(), file.path())));
-        let (_, path): (u64, PathBuf) = sized.max()?;
-        Some(Query::scan(&fs::read_to_string(path).ok()?))
     }
 }
 
