@@ -31,8 +31,10 @@ impl OneShot {
 
     fn run(&mut self, script: &Script, assumptions: &[Term], deadline: &Deadline) -> Result<Answer, Error> {
         let (text, symbols) = self.query(script, assumptions)?;
-        let file = temporary(&text)
-            .map_err(|source| Error::Io { what: "cannot write the query".to_owned(), source })?;
+        let file = temporary(&text).map_err(|source| Error::Io {
+            what: "cannot write the query to a file (TMPDIR says where)".to_owned(),
+            source,
+        })?;
         let path = file.path().display().to_string();
         let arguments: Vec<String> =
             self.program.arguments.iter().map(|word| word.replace(FILE, &path)).collect();
