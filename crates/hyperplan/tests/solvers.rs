@@ -133,6 +133,26 @@ echo unsat; echo '(error \"no model\")'; exit 1";
     fake.is_clean().unwrap_or_else(|left| panic!("{left}"));
 }
 
+#[test]
+fn all_questions_are_in_the_file() {
+    let (project, user) = folders();
+    // Values are no use where the answer is not known, and there are as many replies as questions.
+    let body = "[ \"$1\" = --version ] && exit 1
+grep -q '^(get-info :version)' \"$1\" || exit 2
+echo unknown; echo '(:version \"9.8.7\")'
+grep '^(get-value' \"$1\" | while read -r line; do echo '(error \"line 5: no model\")'; done
+tail -n 2 \"$1\" | grep -q '^(get-info :reason-unknown)' && echo '(:reason-unknown \"too hard (for me)\")'";
+    let fake = Fake::new(body);
+    let lines = "one-shot = [\"{file}\"]\ntells-version = true\n";
+    fs::write(project.path().join("hyperplan.toml"), entry("weak", &fake) + lines).expect("ours");
+    let run = solve_in(project.path(), user.path(), &["--solver", "weak", "--quantifiers", "expand"]);
+    assert_eq!(run.status, 3, "{}", run.stderr);
+    let answer = &run.json()[0];
+    assert_eq!(answer["reason"], "too hard (for me)");
+    assert_eq!(answer["solver"], serde_json::json!({"name": "weak", "version": "9.8.7"}));
+    fake.is_clean().unwrap_or_else(|left| panic!("{left}"));
+}
+
 /// Real solvers give models through files as they do in a dialogue.
 #[test]
 fn real_solvers_take_files() {

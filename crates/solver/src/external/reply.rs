@@ -228,7 +228,9 @@ pub(super) fn reason(reply: &Reply) -> Option<String> {
     let Reply::Expression(text) = reply else { return None };
     let inner = text.strip_prefix('(')?.strip_suffix(')')?.trim();
     let reason = inner.strip_prefix(":reason-unknown")?.trim().trim_matches('"').trim();
-    Some(reason.trim_start_matches('(').trim_end_matches(')').to_owned())
+    // `(incomplete)` is what is meant by the one in parentheses; those in a sentence belong to it.
+    let whole = reason.strip_prefix('(').and_then(|rest| rest.strip_suffix(')'));
+    Some(whole.unwrap_or(reason).to_owned())
 }
 
 /// A value in any notation.
