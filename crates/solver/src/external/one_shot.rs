@@ -24,13 +24,22 @@ pub(super) struct OneShot {
     told: Told,
 }
 
+/// A query with its questions.
+struct Query {
+    text: Vec<u8>,
+    /// Whether it asks for the version. It may become known elsewhere before the reply comes, which is due all the same.
+    asks_version: bool,
+    /// The symbols whose values it asks for.
+    symbols: Vec<Term>,
+}
+
 impl OneShot {
     pub(super) fn new(program: Program, options: &Options) -> OneShot {
         OneShot { program, options: options.clone(), model: None, told: Told::default() }
     }
 
     fn run(&mut self, script: &Script, assumptions: &[Term], deadline: &Deadline) -> Result<Answer, Error> {
-        let (text, symbols) = self.query(script, assumptions)?;
+        let Query { text, asks_version, symbols } = self.query(script, assumptions)?;
         let file = temporary(&text).map_err(|source| Error::Io {
             what: "cannot write the query to a file (TMPDIR says where)".to_owned(),
             source,
@@ -44,7 +53,7 @@ impl OneShot {
         let Some(answer) = exchange.answer(deadline)? else {
             return Ok(Answer::Unknown(deadline.reason().to_owned()));
         };
-        if self.program.is_to_tell_version() {
+        if asks_version {
             self.program.version.learn(&exchange.version(deadline).unwrap_or_default());
         }
         match answer {
@@ -64,8 +73,7 @@ impl OneShot {
         }
     }
 
-    /// The query, and the symbols that it asks about.
-    fn query(&mut self, script: &Script, assumptions: &[Term]) -> Result<(Vec<u8>, Vec<Term>), Error> {
+    fn query(&mut self, script: &Script, assumptions: &[Term]) -> Result<Query, Error> {
         let terms = &script.terms;
         let mut printer = Printer::new();
         printer.scan(terms, script.literals(0));
@@ -78,7 +86,8 @@ impl OneShot {
             let _ = printer.assertion(&mut text, terms, literals);
         }
         text.extend_from_slice(b"(check-sat)\n");
-        if self.program.is_to_tell_version() {
+        let asks_version = self.program.is_to_tell_version();
+        if asks_version {
             text.extend_from_slice(VERSION);
         }
         let known = |t: &Term| terms.op(*t) == Op::Symbol && printer.is_declared(*t);
@@ -90,7 +99,7 @@ impl OneShot {
         }
         // Last, since some end at the error that it may be.
         text.extend_from_slice(REASON);
-        Ok((text, symbols))
+        Ok(Query { text, asks_version, symbols })
     }
 }
 
