@@ -270,15 +270,16 @@ pub(crate) fn allowed(run: &Record) -> Option<f64> {
     run.limit.wall_s.or(run.limit.cpu_s)
 }
 
-/// The answer that is known to be right: the expected one, or one with a checked witness. Where witnesses contradict
+/// The answer that is known to be right: one with a checked witness, or else the expected one. Where witnesses contradict
 /// each other nothing is known.
 fn truth(runs: &[&Record]) -> Option<Answer> {
     let agreed = |answers: BTreeSet<Answer>| if answers.len() == 1 { answers.first().copied() } else { None };
-    let expected: BTreeSet<Answer> = runs.iter().filter_map(|run| run.expected).collect();
-    if expected.is_empty() {
-        agreed(runs.iter().filter(|run| is_certified(run)).filter_map(|run| answer(run)).collect())
+    let certified = runs.iter().filter(|run| is_certified(run)).filter_map(|run| answer(run));
+    let certified: BTreeSet<Answer> = certified.collect();
+    if certified.is_empty() {
+        agreed(runs.iter().filter_map(|run| run.expected).collect())
     } else {
-        agreed(expected)
+        agreed(certified)
     }
 }
 

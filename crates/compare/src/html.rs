@@ -192,7 +192,7 @@ fn finding_view(finding: &Finding, links: &Links<'_>) -> FindingView {
     FindingView {
         instance: finding.instance.clone(),
         kind: finding.kind.to_string(),
-        fault: finding.fault.to_string(),
+        fault: finding.blame(),
         truth: finding.truth,
         claims: finding.claims.iter().map(claim).collect(),
     }

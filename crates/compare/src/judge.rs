@@ -6,7 +6,9 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::contest::{Contest, answer, is_query, is_refuted, is_refuted_strategy, is_wrong_model};
+use crate::contest::{
+    Contest, answer, is_certified, is_query, is_refuted, is_refuted_strategy, is_wrong_model,
+};
 use crate::text::one_line;
 use crate::{Answer, Record};
 
@@ -14,6 +16,8 @@ use crate::{Answer, Record};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {
+    /// A checked witness contradicts the known status.
+    WrongStatus,
     /// An answer contradicts the known status.
     Expected,
     /// Different solvers gave different answers, each always the same.
@@ -32,7 +36,8 @@ pub enum Kind {
 pub enum Fault {
     /// A solver's: it was asked the same as one that says otherwise, or got a query and no more, or its model is wrong.
     Solver,
-    /// A solver's, or that of who wrote the known status: several solvers answered, and none says what it says.
+    /// That of who wrote the known status, or a solver's after all, unless a witness was checked: several solvers answered,
+    /// and none says what it says.
     Status,
     /// Ours, for all that is known: nothing clears the encoding.
     Ours,
@@ -68,6 +73,16 @@ pub struct Finding {
     pub truth: Option<Answer>,
     /// Who said what.
     pub claims: Vec<Claim>,
+}
+
+impl Finding {
+    /// Whose fault it is, in words.
+    pub(crate) fn blame(&self) -> String {
+        match self.kind {
+            Kind::WrongStatus => "for a checked witness contradicts it".to_owned(),
+            _ => self.fault.to_string(),
+        }
+    }
 }
 
 /// All that is wrong.
@@ -135,15 +150,32 @@ impl<'a> Instance<'a> {
     }
 
     /// What is wrong with the answers, once: where they contradict the known status and each other, the claims are those
-    /// of all.
-    fn answers(&self) -> Option<Finding> {
-        match (self.against_expected(), self.disagreement()) {
+    /// of all. A status that is itself wrong is told of by itself.
+    fn answers(&self) -> Vec<Finding> {
+        let disagreement = self.disagreement();
+        if let Some(wrong) = self.wrong_status() {
+            return std::iter::once(wrong).chain(disagreement).collect();
+        }
+        let finding = match (self.against_expected(), disagreement) {
             (Some(against), Some(other)) => {
                 let fault = against.fault.max(other.fault);
                 Some(Finding { fault, claims: other.claims, ..against })
             }
             (against, other) => against.or(other),
-        }
+        };
+        finding.into_iter().collect()
+    }
+
+    /// Checked witnesses against the known status, where they do not contradict each other too.
+    fn wrong_status(&self) -> Option<Finding> {
+        let truth = self.truth?;
+        let against = |run: &&Run<'_>| {
+            is_certified(run.record)
+                && answer(run.record) == Some(truth)
+                && run.record.expected.is_some_and(|expected| expected != truth)
+        };
+        let right: Vec<&Run<'_>> = self.runs.iter().filter(against).collect();
+        (!right.is_empty()).then(|| self.finding(Kind::WrongStatus, Fault::Status, claims(&right)))
     }
 
     /// Answers other than the expected one.
@@ -248,6 +280,7 @@ fn claims(runs: &[&Run<'_>]) -> Vec<Claim> {
 impl fmt::Display for Kind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
+            Kind::WrongStatus => "the known status is wrong",
             Kind::Expected => "against the known status",
             Kind::Disagreement => "solvers disagree",
             Kind::SelfContradiction => "a solver contradicts itself",
@@ -303,7 +336,7 @@ impl Claim {
 
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}, {}", self.instance, self.kind, self.fault)?;
+        write!(f, "{}: {}, {}", self.instance, self.kind, self.blame())?;
         match self.truth {
             Some(truth) => write!(f, "; known: {truth}"),
             None => Ok(()),

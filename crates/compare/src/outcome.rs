@@ -191,6 +191,9 @@ pub(crate) fn of_query(measured: &Measured, query: &Query, over: bool) -> Outcom
     if measured.signal.is_some() {
         return trouble(Status::Error, None);
     }
+    if answers.iter().any(|answer| *answer != status) {
+        return trouble(Status::Error, Some("it gave several answers to one check".to_owned()));
+    }
     Outcome { expected, ..Outcome::new(status, None) }
 }
 

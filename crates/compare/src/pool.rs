@@ -9,7 +9,9 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
+
+use rustix::process::{Pid, Signal, kill_process, kill_process_group};
 
 use crate::folders::{self, Folders};
 use crate::outcome::{self, Outcome};
@@ -21,6 +23,8 @@ use crate::witness;
 
 /// How often the flag of an interruption is looked at.
 const TICK: Duration = Duration::from_millis(100);
+/// How much later than its limits a supervisor may end a run.
+const LATE: Duration = Duration::from_secs(5);
 /// How long hyperplan may take to end by itself when its time is over.
 const GRACE: f64 = 2.0;
 
@@ -193,15 +197,58 @@ fn measure(job: &Job, setting: &Setting, lifelines: &Lifelines) -> io::Result<Op
         let _ = stdin.write_all(&line);
         lifelines.hold(child.id(), stdin);
     }
-    let mut said = String::new();
-    let read = child.stdout.take().map_or(Ok(0), |mut stdout| stdout.read_to_string(&mut said));
+    let heard = hear(&mut child, job, lifelines);
     let status = child.wait();
     lifelines.release(child.id());
-    read?;
-    match serde_json::from_str(&said) {
-        Ok(measured) => Ok(Some(measured)),
-        Err(_) if lifelines.are_cut() => Ok(None),
-        Err(_) => Err(io::Error::other(format!("the process that measures a run ended: {}", status?))),
+    let heard = heard?;
+    // The number of the program, if it was started, and what became of it.
+    if let Some(measured) = heard.lines().last().and_then(|line| serde_json::from_str(line).ok()) {
+        return Ok(Some(measured));
+    }
+    let program = heard.lines().next().and_then(|line| line.parse().ok());
+    if let Some(group) = program.and_then(Pid::from_raw) {
+        // Nobody else ends it any more.
+        let _ = kill_process_group(group, Signal::KILL);
+    }
+    if lifelines.are_cut() {
+        return Ok(None);
+    }
+    let failure = Some(format!("the process that measures it ended: {}", status?));
+    Ok(Some(Measured { failure, ..Measured::default() }))
+}
+
+/// What a supervisor says. One that was stopped, by the program perhaps, is told to go on, and ended if that is of no use.
+fn hear(child: &mut Child, job: &Job, lifelines: &Lifelines) -> io::Result<String> {
+    let Some(mut stdout) = child.stdout.take() else { return Ok(String::new()) };
+    let (sender, heard) = mpsc::channel();
+    thread::Builder::new().name("hear".into()).spawn(move || {
+        let mut said = String::new();
+        let read = stdout.read_to_string(&mut said).map(|_| said);
+        // Somebody waits for it.
+        let _ = sender.send(read);
+    })?;
+    let allowed = job.limit.wall_s.map(|seconds| Duration::try_from_secs_f64(seconds + job.grace_s));
+    let mut due = allowed.and_then(Result::ok).and_then(|time| Instant::now().checked_add(time + LATE));
+    let mut told = false;
+    loop {
+        match heard.recv_timeout(TICK) {
+            Ok(said) => return said,
+            Err(RecvTimeoutError::Disconnected) => return Ok(String::new()),
+            Err(RecvTimeoutError::Timeout) => {}
+        }
+        let now = Instant::now();
+        if lifelines.are_cut() {
+            due = due.min(Some(now + LATE)).or(Some(now + LATE));
+        }
+        if due.is_some_and(|due| now >= due) {
+            if told {
+                child.kill()?;
+            } else if let Some(pid) = i32::try_from(child.id()).ok().and_then(Pid::from_raw) {
+                // It may have ended meanwhile.
+                let _ = kill_process(pid, Signal::CONT);
+            }
+            (told, due) = (true, Some(now + LATE));
+        }
     }
 }
 

@@ -203,12 +203,12 @@ fn score<'a: 'b, 'b>(cells: impl Iterator<Item = &'b Cell<'a>>, longest: f64) ->
     score
 }
 
-/// The cell of the fastest that solved the instance; where none did, of any for which it counts.
+/// The cell of the fastest that solved the instance; where none did, of any for which it counts and that was not wrong.
 fn best<'a, 'b>(row: &'b [Option<Cell<'a>>]) -> Option<&'b Cell<'a>> {
-    let key = |cell: &Cell<'_>| (cell.solved().is_none(), cell.wrong, cell.median.wall_s);
-    row.iter().flatten().filter(|cell| cell.counts()).min_by(|a, b| {
+    let key = |cell: &Cell<'_>| (cell.solved().is_none(), cell.median.wall_s);
+    row.iter().flatten().filter(|cell| cell.counts() && !cell.wrong).min_by(|a, b| {
         let (a, b) = (key(a), key(b));
-        a.0.cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.total_cmp(&b.2))
+        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
     })
 }
 

@@ -119,7 +119,11 @@ pub fn supervise() -> io::Result<()> {
         let _ = stop.send(Event::Stop);
     })?;
     let measured = match Supervised::start(&job, sender) {
-        Ok(supervised) => supervised.watch(&job, &events),
+        Ok(supervised) => {
+            // For who has to end it if this process cannot.
+            let _ = writeln!(io::stdout().lock(), "{}", supervised.main.as_raw_nonzero());
+            supervised.watch(&job, &events)
+        }
         Err(error) => Some(Measured {
             failure: Some(format!("cannot run {}: {error}", job.program)),
             ..Measured::default()

@@ -147,3 +147,22 @@ specs/model.hp#m: a model fails, a solver's fault; known: sat
     assert_eq!(judge(&sample()).to_string(), expected);
     assert_eq!(judge(&sample()).exit_code(), 5);
 }
+
+/// A witness says more than what somebody once wrote.
+#[test]
+fn a_checked_witness_refutes_a_status() {
+    let known = |record: Record| Record { expected: Some(Answer::Unsat), ..record };
+    let checked = |solver| Record { verified: Some("model".to_owned()), ..known(query(solver, Status::Sat)) };
+    assert_eq!(kinds(&[checked("z3")]), [(Kind::WrongStatus, Fault::Status)]);
+    let records = [checked("z3"), checked("yices"), known(query("liar", Status::Unsat))];
+    let judgement = judge(&records);
+    assert_eq!(kinds(&records), [(Kind::WrongStatus, Fault::Status), (Kind::Disagreement, Fault::Solver)]);
+    assert!(judgement.findings.iter().all(|finding| finding.truth == Some(Answer::Sat)));
+    let first = judgement.to_string().lines().next().map(str::to_owned);
+    let expected = "f.hp#o: the known status is wrong, for a checked witness contradicts it; known: sat";
+    assert_eq!(first.as_deref(), Some(expected));
+    assert_eq!(judgement.exit_code(), 4);
+    // Without the witness it is the other way round.
+    let records = [known(query("z3", Status::Sat)), known(query("liar", Status::Unsat))];
+    assert_eq!(kinds(&records), [(Kind::Expected, Fault::Solver)]);
+}

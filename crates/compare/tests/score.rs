@@ -222,3 +222,27 @@ fn solvers_by_themselves_are_told_from_those_that_hyperplan_asks() {
     let keep = Record { quantifiers: Some("keep".to_owned()), ..problem("z3") };
     assert_eq!(names(&[problem("z3"), keep, query("z3")]), ["z3", "hyperplan z3 auto", "hyperplan z3 keep"]);
 }
+
+#[test]
+fn the_virtual_best_is_never_wrong() {
+    let known = |record: Record| Record { expected: Some(Answer::Unsat), verified: None, ..record };
+    let all = score_all(&[
+        known(run("liar", "a", Status::Sat, 0.1)),
+        known(run("z3", "a", Status::Timeout, 10.0)),
+        known(run("liar", "b", Status::Sat, 0.1)),
+    ]);
+    // Of `b` there is nothing but a wrong answer.
+    assert_eq!((all.best.counted, all.best.wrong, all.best.timeout, all.best.par2), (1, 0, 1, 20.0));
+    assert_eq!((of(&all, "liar").counted, of(&all, "liar").wrong), (2, 2));
+}
+
+#[test]
+fn a_checked_witness_counts_though_the_status_is_wrong() {
+    let known = |record: Record| Record { expected: Some(Answer::Unsat), ..record };
+    let all = score_all(&[
+        known(run("z3", "a", Status::Sat, 1.0)),
+        known(Record { verified: None, ..run("liar", "a", Status::Unsat, 0.1) }),
+    ]);
+    assert_eq!((of(&all, "z3").solved, of(&all, "z3").wrong), (1, 0));
+    assert_eq!((of(&all, "liar").solved, of(&all, "liar").wrong), (0, 1));
+}

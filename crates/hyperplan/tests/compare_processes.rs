@@ -208,14 +208,29 @@ fn several_at_a_time() {
     assert_eq!(fake.begun(), 4);
 }
 
+/// The run fails, and the others go on.
 #[test]
-fn without_the_process_that_measures_there_is_no_run() {
+fn the_process_that_measures_is_killed() {
     let comparison = Comparison::new();
-    let files = comparison.queries(1);
-    let fake = Fake::new("kill -KILL $PPID\nexec sleep 300");
-    let run = comparison.run(&[text(&files), &solver(&fake)]);
-    assert_eq!(run.status, 2, "{}", run.stderr);
-    assert!(run.stderr.contains("the process that measures a run ended: signal: 9"), "{}", run.stderr);
-    assert_eq!(comparison.log(), "");
+    let files = comparison.queries(2);
+    let fake = Fake::new("sleep 300 & note $!\nkill -KILL $PPID\nexec sleep 300");
+    let other = Fake::called("other", "cat > /dev/null; echo sat");
+    let solvers = format!("{},'{}'", solver(&fake), other.program().display());
+    let run = comparison.run(&[text(&files), &solvers]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    let mut records = comparison.records();
+    records.sort_by_key(|record| record["status"].to_string());
+    let statuses: Vec<_> = records.iter().map(|record| &record["status"]).collect();
+    assert_eq!(statuses, ["error", "error", "sat", "sat"]);
+    let message = records[0]["message"].as_str().expect("it says why");
+    assert!(message.contains("the process that measures it ended: signal: 9"), "{message}");
     fake.is_clean().unwrap_or_else(|left| panic!("{left}"));
+}
+
+/// The time limit holds all the same.
+#[test]
+fn the_process_that_measures_is_stopped() {
+    let fake = Fake::new("kill -STOP $PPID\nexec sleep 300");
+    let record = one(&fake, &["--timeout=0.5"]);
+    assert_eq!(record["status"], "timeout", "{record}");
 }

@@ -130,3 +130,13 @@ fn failures_on_queries() {
     // A file without a check asks nothing.
     assert_eq!(of_query(&ended(0, "", ""), &query(&[]), false).status, Status::Error);
 }
+
+#[test]
+fn several_answers_to_one_check_are_none() {
+    let query = Query { checks: vec![None], ..Query::default() };
+    let of = |stdout: &str| of_query(&ended(0, stdout, ""), &query, false);
+    assert_eq!(of("sat\nsat\n").status, Status::Sat);
+    let outcome = of("sat\nunsat\n");
+    assert_eq!(outcome.status, Status::Error);
+    assert_eq!(outcome.message.as_deref(), Some("it gave several answers to one check"));
+}
