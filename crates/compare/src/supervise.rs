@@ -119,11 +119,7 @@ pub fn supervise() -> io::Result<()> {
         let _ = stop.send(Event::Stop);
     })?;
     let measured = match Supervised::start(&job, sender) {
-        Ok(supervised) => {
-            // For who has to end it if this process cannot.
-            let _ = writeln!(io::stdout().lock(), "{}", supervised.main.as_raw_nonzero());
-            supervised.watch(&job, &events)
-        }
+        Ok(supervised) => supervised.watch(&job, &events),
         Err(error) => Some(Measured {
             failure: Some(format!("cannot run {}: {error}", job.program)),
             ..Measured::default()
@@ -159,6 +155,8 @@ impl Supervised {
         let mut child = command.spawn()?;
         let pid = i32::try_from(child.id()).ok().and_then(Pid::from_raw);
         let main = pid.ok_or_else(|| io::Error::other("a process without a number"))?;
+        // At once, for who has to end it if this process is killed.
+        let _ = writeln!(io::stdout().lock(), "{}", main.as_raw_nonzero());
         let none = || io::Error::other("a process without its pipes");
         let stdout = child.stdout.take().ok_or_else(none)?;
         let stderr = child.stderr.take().ok_or_else(none)?;

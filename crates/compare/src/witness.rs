@@ -44,6 +44,9 @@ fn verdict(request: Request, file: &str, measured: &Measured) -> Verdict {
         Err(PrintedModelError::Empty) => return Verdict::Unchecked("none was printed".to_owned()),
         Err(error) => return Verdict::Unchecked(error.to_string()),
     };
+    if let Some(symbol) = printed.ambiguous() {
+        return Verdict::Unchecked(format!("it says two things of {symbol}"));
+    }
     match fs::read(file) {
         Ok(bytes) => of_model(request, &String::from_utf8_lossy(&bytes), &printed),
         Err(error) => Verdict::Unchecked(format!("{file}: {error}")),

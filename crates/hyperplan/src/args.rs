@@ -431,11 +431,12 @@ pub(crate) struct Compare {
     pub(crate) benchexec: Option<PathBuf>,
 }
 
-const COMPARE_HELP: &str = "Every run is written to the log as soon as it has ended. The same command again does only \
+const COMPARE_HELP: &str =
+    "Every run is written to the log as soon as it has ended. The same command again does only \
 what is missing there: after an interruption, or where a file, a solver, an option or a limit has changed.
 
-Exit status: 0 nothing is wrong with any answer; 4 a solver gave a wrong answer or model; 5 hyperplan may have; \
-2 bad usage or input; 130 interrupted.";
+Exit status: 0 nothing is wrong with any answer; 4 a solver gave a wrong answer or model, or is not there; \
+5 hyperplan may be wrong; 2 bad usage or input; 130 interrupted.";
 
 /// A constant and its values.
 #[derive(Clone, Debug, PartialEq, Eq)]

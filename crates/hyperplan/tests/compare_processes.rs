@@ -213,7 +213,7 @@ fn several_at_a_time() {
 fn the_process_that_measures_is_killed() {
     let comparison = Comparison::new();
     let files = comparison.queries(2);
-    let fake = Fake::new("sleep 300 & note $!\nkill -KILL $PPID\nexec sleep 300");
+    let fake = Fake::new("sleep 300 & note $!\nsleep 0.3\nkill -KILL $PPID\nexec sleep 300");
     let other = Fake::called("other", "cat > /dev/null; echo sat");
     let solvers = format!("{},'{}'", solver(&fake), other.program().display());
     let run = comparison.run(&[text(&files), &solvers]);

@@ -49,6 +49,14 @@ pub enum Error {
         /// What it said.
         said: String,
     },
+    /// The solver spoke before it was asked.
+    #[error("solver {name} answered before it was asked{}", said_after(said))]
+    Early {
+        /// The solver.
+        name: String,
+        /// What it said.
+        said: String,
+    },
     /// The deadline passed while values were read.
     #[error("solver {name} gave no values before the deadline")]
     Deadline {

@@ -47,8 +47,11 @@ pub(crate) fn run(args: &args::Compare, verbose: bool, out: &mut Output) -> Outc
     }
     let runs = plan(&instances, &solvers, &ways);
     if runs.is_empty() {
-        return Err(Failure::input("there is nothing to run: the builtin solver reads no SMT-LIB files"));
+        return Err(Failure::input(
+            "there is nothing to run: the builtin solver reads no SMT-LIB files, and there is no other",
+        ));
     }
+    left_out(args, &instances, &solvers, out);
     let cannot =
         |error: io::Error| Failure::input(format_args!("cannot write {}: {error}", args.out.display()));
     let folder = prepare(&args.out).map_err(cannot)?;
@@ -71,17 +74,35 @@ pub(crate) fn run(args: &args::Compare, verbose: bool, out: &mut Output) -> Outc
             runs.len()
         ));
     }
-    if !do_all(&missing, &setting, &mut log, &mut done, Progress::new(missing.len(), verbose, out))? {
-        out.error(format_args!(
-            "interrupted: {} of {} runs are done, and kept in {}; the same command does the others",
-            done.len(),
-            runs.len(),
-            args.out.join(LOG).display()
-        ));
-        return Ok(Status::Undecided);
+    let all = do_all(&missing, &setting, &mut log, &mut done, Progress::new(missing.len(), verbose, out));
+    let kept = format!(
+        "{} of {} runs are done, and kept in {}; the same command does the others",
+        done.len(),
+        runs.len(),
+        args.out.join(LOG).display()
+    );
+    match all {
+        Ok(true) => {}
+        Ok(false) => {
+            out.error(format_args!("interrupted: {kept}"));
+            return Ok(Status::Undecided);
+        }
+        Err(failure) => return Err(Failure { message: format!("{}; {kept}", failure.message), ..failure }),
     }
     let records: Vec<Record> = runs.iter().filter_map(|run| done.remove(&run.key)).collect();
     report(&records, &args.out, out)
+}
+
+/// Says what of the request comes to nothing.
+fn left_out(args: &args::Compare, instances: &[Arc<Instance>], solvers: &[Arc<Candidate>], out: &Output) {
+    let is_query = |instance: &Arc<Instance>| matches!(instance.kind, Kind::Query(_));
+    let embedded = args.solver.is_some() && solvers.iter().any(|solver| solver.standalone.is_none());
+    if embedded && instances.iter().any(is_query) {
+        out.remark("note: the builtin solver reads no SMT-LIB files, and is left out there");
+    }
+    if !args.set.is_empty() && instances.iter().all(is_query) {
+        out.remark("note: --set is for problem files, of which there are none");
+    }
 }
 
 /// Does what is missing; whether all of it was done.

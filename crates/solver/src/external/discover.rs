@@ -122,7 +122,8 @@ pub(super) fn locate(profile: &Profile) -> (Option<PathBuf>, Vec<String>) {
 pub(super) fn search(program: &str) -> (Option<PathBuf>, Vec<String>) {
     if program.contains('/') {
         let path = PathBuf::from(program);
-        return (is_program(&path).then_some(path), vec![program.to_owned()]);
+        let there = if path.is_file() { ", which cannot be executed" } else { "" };
+        return (is_program(&path).then_some(path), vec![format!("{program}{there}")]);
     }
     let directories = env::var_os("PATH").unwrap_or_default();
     let mut tried = Vec::new();

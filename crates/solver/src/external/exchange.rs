@@ -100,7 +100,7 @@ impl Exchange {
                 Meaning::Noise => {}
                 Meaning::Error(message) => return Err(self.reported(message)),
                 Meaning::Answer(_) | Meaning::Timeout | Meaning::Other => {
-                    return Err(self.misunderstood("nothing yet", reply.text()));
+                    return Err(self.early(reply.text()));
                 }
             }
         }
@@ -113,7 +113,7 @@ impl Exchange {
         let is_answer = |reply: &&Reply| matches!(reply::meaning(reply), Meaning::Answer(_));
         let Some(last) = self.process.unread().filter(is_answer).last() else { return Ok(()) };
         let said = last.text().to_owned();
-        Err(self.misunderstood("nothing yet", &said))
+        Err(self.early(&said))
     }
 
     /// The answer to a check, from what the solver says; `None` at the deadline.
@@ -217,6 +217,14 @@ impl Exchange {
             return Error::Memory { name: self.name.clone() };
         }
         Error::Protocol { name: self.name.clone(), asked: asked.to_owned(), said }
+    }
+
+    /// It said something before it was asked.
+    fn early(&mut self, said: &str) -> Error {
+        match self.misunderstood("", said) {
+            Error::Protocol { name, said, .. } => Error::Early { name, said },
+            error => error,
+        }
     }
 
     /// An error that the solver reported. One that knows no such logic did nothing wrong.

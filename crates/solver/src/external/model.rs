@@ -10,6 +10,8 @@ use super::sexpr::parts;
 #[derive(Clone, Debug, Default)]
 pub struct PrintedModel {
     values: FxHashMap<String, String>,
+    /// A symbol of which two things are said, in different notations perhaps.
+    ambiguous: Option<String>,
 }
 
 /// Why a text is no model.
@@ -92,8 +94,17 @@ impl PrintedModel {
             }
             _ => return false,
         };
-        self.values.insert(bare(name).to_owned(), value.to_owned());
+        let former = self.values.insert(bare(name).to_owned(), value.to_owned());
+        if former.is_some_and(|former| former != *value) {
+            self.ambiguous.get_or_insert_with(|| bare(name).to_owned());
+        }
         true
+    }
+
+    /// A symbol of which it says two things: the last holds, but they may contradict each other.
+    #[must_use]
+    pub fn ambiguous(&self) -> Option<&str> {
+        self.ambiguous.as_deref()
     }
 
     /// Whether it says what the symbol is.
@@ -149,6 +160,19 @@ mod tests {
         ] {
             assert_eq!(values(output), expected, "{output}");
         }
+    }
+
+    #[test]
+    fn what_is_said_twice() {
+        let ambiguous = |output: &str| {
+            let model = PrintedModel::read(output).expect("a model");
+            model.ambiguous().map(str::to_owned)
+        };
+        assert_eq!(
+            ambiguous("sat\n((x 1) (|y| 2))\n((define-fun y () Int 2) (define-fun x () Int 1))"),
+            None
+        );
+        assert_eq!(ambiguous("sat\n((x 1) (y 2))\n((define-fun |y| () Int 3))").as_deref(), Some("y"));
     }
 
     #[test]
