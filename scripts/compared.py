@@ -36,7 +36,10 @@ def compare(arguments: argparse.Namespace, *options: str) -> tuple[list[dict], i
     try:
         process = subprocess.Popen(command, stdout=sys.stderr, cwd=ROOT)
     except OSError as error:
-        sys.exit(f"cannot run {program}: {error.strerror}; build it with cargo build --release -p hyperplan, or name it: --hyperplan FILE")
+        build = "build it with cargo build --release -p hyperplan, or name it: --hyperplan FILE"
+        print(f"cannot run {program}: {error.strerror}; {build}", file=sys.stderr)
+        # As hyperplan does where the usage is bad: 1 says that something has become worse.
+        sys.exit(2)
     status = ended(process)
     runs = arguments.out / "runs.json"
     if status not in (0, 4, 5) or not runs.is_file():

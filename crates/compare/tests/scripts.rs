@@ -168,6 +168,6 @@ fn programs_that_are_missing_or_interrupted() {
         assert_eq!(run(&program), ("interrupted: hint\n".to_owned(), Some(130)), "{name}");
         let (said, status) = run(&dir.path().join("nothing"));
         assert!(said.starts_with("cannot run ") && said.contains("cargo build --release"), "{said}");
-        assert_eq!((said.lines().count(), status), (1, Some(1)), "{said}");
+        assert_eq!((said.lines().count(), status), (1, Some(2)), "{said}");
     }
 }
