@@ -153,7 +153,7 @@ fn encodings(instance: &Instance, solver: &Candidate, ways: &Ways) -> Vec<(Optio
 }
 
 /// How queries are given to solvers and their answers read; changes where the same output would come to something else.
-const READING: &str = "without status";
+const READING: &str = "without status, one answer, models evaluated";
 
 impl Run {
     /// A digest of all that the outcome depends on, with the build of hyperplan where it takes part.
