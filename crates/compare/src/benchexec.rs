@@ -5,11 +5,12 @@
 use std::collections::BTreeSet;
 use std::fs;
 use std::io;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 use askama::Template;
 use serde_json::to_string as quoted;
 
+use crate::paths::relative;
 use crate::{Answer, Limit};
 
 /// A problem file and what is asked of it.
@@ -156,14 +157,4 @@ fn literally(path: &str) -> String {
         }
     }
     pattern
-}
-
-/// The way from a folder to a file, both absolute: the files may be moved together.
-fn relative(from: &Path, to: &Path) -> PathBuf {
-    let shared = from.components().zip(to.components()).take_while(|(a, b)| a == b).count();
-    if shared == 0 {
-        return to.to_owned();
-    }
-    let up = from.components().skip(shared).map(|_| Component::ParentDir);
-    up.chain(to.components().skip(shared)).collect()
 }

@@ -9,6 +9,7 @@ use serde::Serialize;
 use crate::contest::{
     Contest, answer, is_certified, is_query, is_refuted, is_refuted_strategy, is_wrong_model,
 };
+use crate::record::checked;
 use crate::text::one_line;
 use crate::{Answer, Record};
 
@@ -308,11 +309,7 @@ impl fmt::Display for Claim {
             write!(f, " says {answer}")?;
         }
         if let Some(verified) = &self.verified {
-            match verified.as_str() {
-                "refuted" => f.write_str(", refuted")?,
-                "model" => f.write_str(", model checked")?,
-                how => write!(f, ", verified {}", one_line(how))?,
-            }
+            write!(f, ", {}", checked(verified))?;
         }
         if self.runs > 1 {
             write!(f, " ({} runs)", self.runs)?;

@@ -13,6 +13,7 @@ mod latex;
 mod links;
 mod log;
 mod outcome;
+mod paths;
 pub mod plan;
 pub mod plot;
 mod pool;
@@ -31,7 +32,7 @@ pub use judge::{Claim, Fault, Finding, Judgement, Kind, judge};
 pub use log::{Log, LogError, Past};
 pub use pool::{Event, Setting, prepare, run_all};
 pub use query::{Query, Request};
-pub use record::{Answer, Limit, Record, Status};
+pub use record::{Answer, Limit, Record, Status, checked};
 pub use supervise::supervise;
 pub use text::one_line;
 

@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 use std::path::{Component, Path, PathBuf};
 use std::{fs, path};
 
+use crate::paths::relative;
+
 /// So many files are linked one by one.
 const FEW: usize = 6;
 
@@ -57,7 +59,7 @@ impl<'a> Links<'a> {
         })?;
         let file = path::absolute(file).ok()?;
         let folder = file.parent()?.canonicalize().ok()?;
-        Some(encoded(&[&between(&self.folder, &folder.join(file.file_name()?))?]))
+        Some(encoded(&[relative(&self.folder, &folder.join(file.file_name()?)).to_str()?]))
     }
 
     /// The files in a folder of queries, with their lengths; nothing of a folder that is not below the log's.
@@ -76,18 +78,6 @@ impl<'a> Links<'a> {
     fn kept(&self, queries: &str, file: Option<&str>) -> String {
         encoded(&[self.log, queries, file.unwrap_or_default()])
     }
-}
-
-/// The way from a folder to a file, both from the root.
-fn between(folder: &Path, file: &Path) -> Option<String> {
-    let same = folder.components().zip(file.components()).take_while(|(a, b)| a == b).count();
-    // Another drive cannot be reached.
-    if same == 0 {
-        return None;
-    }
-    let up = folder.components().skip(same).map(|_| Some(".."));
-    let down = file.components().skip(same).map(|part| part.as_os_str().to_str());
-    Some(up.chain(down).collect::<Option<Vec<&str>>>()?.join("/"))
 }
 
 /// A relative link, whatever its parts look like.
@@ -112,14 +102,6 @@ fn encoded(parts: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_way_to_a_file() {
-        let way = |folder: &str, file: &str| between(Path::new(folder), Path::new(file));
-        assert_eq!(way("/a/b", "/a/b/c.hp").as_deref(), Some("c.hp"));
-        assert_eq!(way("/a/b/out", "/a/specs/c.hp").as_deref(), Some("../../specs/c.hp"));
-        assert_eq!(way("/a", "/b/c d.hp").as_deref(), Some("../b/c d.hp"));
-    }
 
     #[test]
     fn links_are_relative() {

@@ -238,7 +238,7 @@ fn hear(child: &mut Child, job: &Job, lifelines: &Lifelines) -> io::Result<Strin
         }
         let now = Instant::now();
         if lifelines.are_cut() {
-            due = due.min(Some(now + LATE)).or(Some(now + LATE));
+            due = Some(due.map_or(now + LATE, |due| due.min(now + LATE)));
         }
         if due.is_some_and(|due| now >= due) {
             if told {

@@ -1,8 +1,11 @@
 //! One finished run, as a line of a comparison's log.
 
+use std::borrow::Cow;
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
+
+use crate::text::one_line;
 
 /// What a run ended with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -144,6 +147,16 @@ pub struct Record {
     /// How often the outermost query was asked; `None` for a query.
     #[serde(default)]
     pub rounds: Option<u64>,
+}
+
+/// What became of a witness, in words, from how a record says that it was checked.
+#[must_use]
+pub fn checked(verified: &str) -> Cow<'_, str> {
+    match verified {
+        "refuted" => "refuted".into(),
+        "model" => "model checked".into(),
+        how => format!("verified {}", one_line(how)).into(),
+    }
 }
 
 #[cfg(test)]

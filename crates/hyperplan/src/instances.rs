@@ -179,10 +179,11 @@ fn of_file(
         return Ok(vec![instance(Kind::Query(query))]);
     }
     let text = std::str::from_utf8(&bytes).map_err(|_| cannot("it is not in UTF-8".to_owned()))?;
-    let known = known(file, text);
+    let meanings = sets.iter().map(|set| Ok((set, lower(file, text, set, out)?)));
+    let meanings: Vec<(&Vec<(String, String)>, Meaning)> = meanings.collect::<Outcome<_>>()?;
+    let known = known(file, text, &meanings);
     let mut found = Vec::new();
-    for set in sets {
-        let Meaning { problem, consts, others } = lower(file, text, set, out)?;
+    for (set, Meaning { problem, consts, others }) in &meanings {
         for objective in &problem.objectives {
             if !objectives.iter().any(|name| name == "all" || *name == objective.name) {
                 continue;
@@ -193,7 +194,7 @@ fn of_file(
                 others: others.clone(),
                 set: set.iter().map(|(name, value)| format!("{name}={value}")).collect(),
                 horizon: horizons(objective).iter().filter_map(|horizon| horizon.steps).max(),
-                expected: expected(&known, &objective.name, &consts).map_err(cannot)?,
+                expected: expected(&known, &objective.name, consts).map_err(cannot)?,
                 ..instance(Kind::Problem { objective: objective.name.clone() })
             });
         }
@@ -202,9 +203,14 @@ fn of_file(
 }
 
 /// What a file says is known, each with the values that all constants have then. What it says of values for which it has
-/// errors is about nothing.
-fn known(file: &Path, text: &str) -> Vec<(KnownStatus, Consts)> {
-    let mut consts: BTreeMap<Vec<(String, String)>, Option<Consts>> = BTreeMap::new();
+/// errors is about nothing. What it means with some constants is known already.
+fn known(
+    file: &Path,
+    text: &str,
+    meanings: &[(&Vec<(String, String)>, Meaning)],
+) -> Vec<(KnownStatus, Consts)> {
+    let read = meanings.iter().map(|(set, meaning)| ((*set).clone(), Some(meaning.consts.clone())));
+    let mut consts: BTreeMap<Vec<(String, String)>, Option<Consts>> = read.collect();
     let with_consts = |status: KnownStatus| {
         let values = consts.entry(status.set.clone()).or_insert_with_key(|set| {
             let (lowered, _, _) = read_with(file, text, set);

@@ -1,7 +1,7 @@
 //! How far a comparison is: a bar on a terminal, a line for each run elsewhere.
 
 use crate::output::Output;
-use hyperplan_compare::{Record, Status, one_line};
+use hyperplan_compare::{Record, Status, checked, one_line};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{self, IsTerminal as _};
 use std::time::{Duration, Instant};
@@ -82,12 +82,7 @@ impl Drop for Progress<'_> {
 
 /// How a run was verified, what it took and what it said, on lines of their own.
 fn details(record: &Record) -> String {
-    let verified = match record.verified.as_deref() {
-        None => String::new(),
-        Some("model") => "model checked; ".to_owned(),
-        Some("refuted") => "refuted; ".to_owned(),
-        Some(how) => format!("verified {}; ", one_line(how)),
-    };
+    let verified = record.verified.as_deref().map(|how| format!("{}; ", checked(how))).unwrap_or_default();
     let mut text = format!("\n    {verified}CPU {:.2} s, memory {:.1} MiB", record.cpu_s, record.memory_mib);
     for line in record.message.iter().flat_map(|message| message.lines()) {
         text.push_str(&format!("\n    {}", one_line(line)));

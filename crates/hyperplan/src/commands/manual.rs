@@ -40,14 +40,10 @@ pub(crate) fn man(args: &args::Man, out: &mut Output) -> Outcome {
 fn visible() -> clap::Command {
     let all = Cli::command();
     let shown: Vec<clap::Command> = all.get_subcommands().filter(|c| !c.is_hide_set()).cloned().collect();
-    let mut command = clap::Command::new("hyperplan").args(all.get_arguments().cloned()).subcommands(shown);
-    for (set, text) in [
-        (clap::Command::about as fn(_, clap::builder::StyledStr) -> _, all.get_about()),
-        (clap::Command::after_help, all.get_after_help()),
-    ] {
-        if let Some(text) = text {
-            command = set(command, text.clone());
-        }
-    }
-    command.version(env!("CARGO_PKG_VERSION"))
+    clap::Command::new("hyperplan")
+        .version(env!("CARGO_PKG_VERSION"))
+        .about(all.get_about().cloned().unwrap_or_default())
+        .after_help(all.get_after_help().cloned().unwrap_or_default())
+        .args(all.get_arguments().cloned())
+        .subcommands(shown)
 }

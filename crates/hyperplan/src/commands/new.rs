@@ -3,6 +3,7 @@
 use crate::args;
 use crate::failure::{Failure, Outcome, Status};
 use crate::output::{Output, cannot_write};
+use hyperplan_compare::one_line;
 use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write as _};
 
@@ -14,7 +15,8 @@ pub(crate) fn run(args: &args::New, out: &mut Output) -> Outcome {
         out.line(STARTER.trim_end())?;
         return Ok(Status::Good);
     };
-    let name = path.display().to_string();
+    // In comments, which end with the line.
+    let name = one_line(&path.display().to_string()).into_owned();
     let opened = OpenOptions::new().write(true).create_new(true).open(path);
     let mut file = opened.map_err(|error| match error.kind() {
         ErrorKind::AlreadyExists => Failure::input(format_args!("{name} is there already")),

@@ -139,12 +139,7 @@ impl<'t> Reader<'t> {
         self.open()?;
         let mut found = Vec::new();
         let mut bound = Vec::new();
-        loop {
-            match self.token()? {
-                (_, Token::Open) => {}
-                (_, Token::Close) => break,
-                (at, _) => return Err(Trouble::syntax(at, "( or ) is missing")),
-            }
+        while self.another()? {
             let (_, name) = self.name()?;
             let sort = self.sort()?;
             self.close()?;
@@ -195,12 +190,7 @@ impl<'t> Reader<'t> {
     fn datatypes(&mut self) -> Result<(), Trouble> {
         self.open()?;
         let mut names = Vec::new();
-        loop {
-            match self.token()? {
-                (_, Token::Open) => {}
-                (_, Token::Close) => break,
-                (at, _) => return Err(Trouble::syntax(at, "( or ) is missing")),
-            }
+        while self.another()? {
             let (at, name) = self.name()?;
             if self.index()? != 0 {
                 return Err(Trouble::unsupported(at, "a datatype with parameters"));

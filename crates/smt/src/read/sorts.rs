@@ -26,6 +26,15 @@ impl<'t> Reader<'t> {
         }
     }
 
+    /// Whether another element of a list begins, in parentheses of its own; the list ends otherwise.
+    pub(super) fn another(&mut self) -> Result<bool, Trouble> {
+        match self.token()? {
+            (_, Token::Open) => Ok(true),
+            (_, Token::Close) => Ok(false),
+            (at, _) => Err(Trouble::syntax(at, "( or ) is missing")),
+        }
+    }
+
     /// A symbol that is no reserved word.
     pub(super) fn name(&mut self) -> Result<(usize, &'t str), Trouble> {
         let (at, token) = self.token()?;
