@@ -1,5 +1,9 @@
 //! What an SMT-LIB file says of itself, read without understanding its terms.
 
+use std::ops::Range;
+
+use hyperplan_smt::{Token, tokens};
+
 use crate::record::Answer;
 
 /// An SMT-LIB 2 file, from outside.
@@ -39,27 +43,7 @@ impl Query {
     pub fn scan(text: &str) -> Query {
         let mut query = Query { bytes: text.len() as u64, ..Query::default() };
         let mut status = None;
-        let mut depth = 0_usize;
-        // The first words of the command that is being read.
-        let mut words: Vec<&str> = Vec::new();
-        for token in Tokens(text) {
-            match token {
-                "(" => {
-                    depth += 1;
-                    if depth == 1 {
-                        words.clear();
-                    }
-                }
-                ")" => {
-                    depth = depth.saturating_sub(1);
-                    if depth == 0 {
-                        query.command(&words, &mut status);
-                    }
-                }
-                word if depth == 1 && words.len() < 3 => words.push(word),
-                _ => {}
-            }
-        }
+        commands(text, |_, words| query.command(words, &mut status));
         query.incremental |= query.checks.len() > 1;
         query
     }
@@ -71,28 +55,12 @@ impl Query {
         let text: String =
             bytes.iter().map(|byte| if byte.is_ascii() { char::from(*byte) } else { 'x' }).collect();
         let mut scrubbed = None;
-        let (mut depth, mut start, mut words) = (0_usize, 0, Vec::new());
-        let mut tokens = Tokens(&text);
-        while let Some(token) = tokens.next() {
-            let end = text.len() - tokens.0.len();
-            match token {
-                "(" => {
-                    depth += 1;
-                    if depth == 1 {
-                        (start, words) = (end - 1, Vec::new());
-                    }
-                }
-                ")" => {
-                    depth = depth.saturating_sub(1);
-                    if depth == 0 && words == ["set-info", ":status"] {
-                        let command = &mut scrubbed.get_or_insert_with(|| bytes.to_vec())[start..end];
-                        command.iter_mut().filter(|byte| **byte != b'\n').for_each(|byte| *byte = b' ');
-                    }
-                }
-                word if depth == 1 && words.len() < 2 => words.push(word),
-                _ => {}
+        commands(&text, |place, words| {
+            if words.starts_with(&["set-info", ":status"]) {
+                let command = &mut scrubbed.get_or_insert_with(|| bytes.to_vec())[place];
+                command.iter_mut().filter(|byte| **byte != b'\n').for_each(|byte| *byte = b' ');
             }
-        }
+        });
         scrubbed
     }
 
@@ -123,40 +91,29 @@ impl Query {
     }
 }
 
-/// Parentheses, and what stands between them and blanks: words, strings and quoted symbols. Comments are left out.
-struct Tokens<'a>(&'a str);
-
-impl<'a> Iterator for Tokens<'a> {
-    type Item = &'a str;
-
-    fn next(&mut self) -> Option<&'a str> {
-        loop {
-            self.0 = self.0.trim_start();
-            if !self.0.starts_with(';') {
-                break;
+/// Tells of each command: where it is, and its first words.
+fn commands(text: &str, mut each: impl FnMut(Range<usize>, &[&str])) {
+    let (mut depth, mut start, mut words) = (0_usize, 0, Vec::new());
+    for (place, token) in tokens(text) {
+        match token {
+            Token::Open => {
+                depth += 1;
+                if depth == 1 {
+                    start = place.start;
+                    words.clear();
+                }
             }
-            let end = self.0.find('\n').unwrap_or(self.0.len());
-            self.0 = &self.0[end..];
+            Token::Close => {
+                depth = depth.saturating_sub(1);
+                if depth == 0 {
+                    each(start..place.end, &words);
+                    words.clear();
+                }
+            }
+            _ if depth == 1 && words.len() < 3 => words.push(&text[place]),
+            _ => {}
         }
-        let length = match self.0.as_bytes().first()? {
-            b'(' | b')' => 1,
-            b'|' => quoted(self.0, '|'),
-            // A doubled quote inside of a string makes two strings of it, which are just as well passed over.
-            b'"' => quoted(self.0, '"'),
-            _ => self
-                .0
-                .find(|c: char| c.is_whitespace() || matches!(c, '(' | ')' | ';' | '"' | '|'))
-                .unwrap_or(self.0.len()),
-        };
-        let (token, rest) = self.0.split_at(length);
-        self.0 = rest;
-        Some(token)
     }
-}
-
-/// How long something in quotes is, with them.
-fn quoted(text: &str, quote: char) -> usize {
-    text[1..].find(quote).map_or(text.len(), |end| end + 2)
 }
 
 #[cfg(test)]

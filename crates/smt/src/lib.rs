@@ -7,6 +7,7 @@
 
 mod eval;
 mod features;
+mod lexer;
 mod name;
 mod rational;
 mod read;
@@ -18,9 +19,10 @@ mod write;
 
 pub use eval::{Evaluation, ModelCheck, Verdict, check_model, check_partial_model, first_violated};
 pub use features::{Features, logic};
+pub use lexer::{Context, Token, Tokens, parts, tokens};
 pub use name::symbol_text;
 pub use rational::Rational;
-pub use read::{Benchmark, Origin, ReadError, read_script};
+pub use read::{Benchmark, Origin, ReadError, read_script, read_value};
 pub use script::{Script, Section};
 pub use term::{Enumeration, Op, Sort, Stem, Term};
 pub use terms::{Terms, View};

@@ -10,9 +10,6 @@
 use std::fmt::Write as _;
 use std::io;
 
-use rsmt2::SmtRes;
-use rsmt2::print::{Sort2Smt, Sym2Smt};
-
 use crate::term::{Op, Sort, Term};
 use crate::terms::{Terms, View};
 
@@ -54,8 +51,7 @@ impl Mangled {
 
     /// The name that is written exactly so, where there is no time: of a text that was read.
     pub(crate) fn verbatim(name: &str) -> Mangled {
-        const RESERVED: &[&str] = &["!", "_", "as", "exists", "forall", "let", "match", "par"];
-        let quoted = !is_simple(name) || name.starts_with(['@', '.']) || RESERVED.contains(&name);
+        let quoted = !is_simple(name) || name.starts_with(['@', '.']) || is_reserved(name);
         Mangled { text: format!("{name}@").into(), quoted, word: false }
     }
 
@@ -74,6 +70,11 @@ impl Mangled {
     pub(crate) fn is_written(&self, text: &str) -> bool {
         text.strip_prefix('|').and_then(|text| text.strip_suffix('|')).unwrap_or(text) == self.timeless()
     }
+}
+
+/// Whether a word is no symbol without quotes.
+pub(crate) fn is_reserved(word: &str) -> bool {
+    matches!(word, "!" | "_" | "as" | "exists" | "forall" | "let" | "match" | "par")
 }
 
 /// Whether it is a symbol without quotes.
@@ -185,25 +186,18 @@ impl<'a> SymbolName<'a> {
     }
 }
 
-impl Sym2Smt for SymbolName<'_> {
-    fn sym_to_smt2<W: io::Write>(&self, w: &mut W, _: ()) -> SmtRes<()> {
-        Ok(self.write(w)?)
-    }
-}
-
 /// A sort of an arena, for printing.
 pub(crate) struct SortName<'a> {
     pub(crate) terms: &'a Terms,
     pub(crate) sort: Sort,
 }
 
-impl Sort2Smt for SortName<'_> {
-    fn sort_to_smt2<W: io::Write>(&self, w: &mut W) -> SmtRes<()> {
+impl SortName<'_> {
+    pub(crate) fn write(&self, w: &mut impl io::Write) -> io::Result<()> {
         match self.sort {
-            Sort::Enum(enumeration) => self.terms.enumeration_name(enumeration).write(w)?,
-            sort => write!(w, "{sort}")?,
+            Sort::Enum(enumeration) => self.terms.enumeration_name(enumeration).write(w),
+            sort => write!(w, "{sort}"),
         }
-        Ok(())
     }
 }
 

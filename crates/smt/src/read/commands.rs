@@ -3,9 +3,9 @@
 use rustc_hash::FxHashMap;
 
 use super::expand::Macro;
-use super::lexer::{Lexer, Token};
 use super::names::{Meaning, Names};
 use super::{Benchmark, Origin, Trouble, newlines, shown};
+use crate::lexer::{Token, Tokens, tokens};
 use crate::script::Script;
 use crate::term::{Sort, Term};
 use crate::terms::Terms;
@@ -15,7 +15,7 @@ const EXPANSION: usize = 1 << 23;
 
 /// What has been read so far.
 pub(super) struct Reader<'t> {
-    pub(super) lexer: Lexer<'t>,
+    pub(super) tokens: Tokens<'t>,
     pub(super) names: Names<'t>,
     pub(super) sorts: FxHashMap<&'t str, Sort>,
     pub(super) macros: Vec<Macro>,
@@ -37,7 +37,7 @@ impl<'t> Reader<'t> {
     pub(super) fn new(text: &'t str) -> Self {
         let sorts = [("Bool", Sort::Bool), ("Int", Sort::Int), ("Real", Sort::Real)];
         Reader {
-            lexer: Lexer::new(text),
+            tokens: tokens(text),
             names: Names::default(),
             sorts: sorts.into_iter().collect(),
             macros: Vec::new(),
@@ -62,7 +62,7 @@ impl<'t> Reader<'t> {
 
     /// Reads all of it.
     pub(super) fn read(mut self) -> Result<Benchmark, Trouble> {
-        while let Some((at, token)) = self.lexer.next()? {
+        while let Some((at, token)) = self.next()? {
             if token != Token::Open {
                 return Err(Trouble::syntax(at, "a command begins with ("));
             }
@@ -244,7 +244,7 @@ impl<'t> Reader<'t> {
         let before = self.script.len();
         self.script.assert(t);
         if self.script.len() > before {
-            self.line = (at, self.line.1 + newlines(&self.lexer.text()[self.line.0..at]));
+            self.line = (at, self.line.1 + newlines(&self.tokens.text()[self.line.0..at]));
             self.origins.push(Origin { number: self.assertions, line: self.line.1 });
         }
         Ok(())
@@ -252,7 +252,7 @@ impl<'t> Reader<'t> {
 
     /// That there is room for so many more terms.
     pub(super) fn check_room(&self, at: usize, more: usize) -> Result<(), Trouble> {
-        let limit = self.lexer.text().len() + EXPANSION;
+        let limit = self.tokens.text().len() + EXPANSION;
         if self.script.terms.len() + more > limit || self.expanded > limit {
             return Err(Trouble::unsupported(at, format!("what expands to more than {limit} terms")));
         }

@@ -7,14 +7,16 @@ mod arith;
 mod bits;
 mod commands;
 mod expand;
-mod lexer;
 mod names;
 mod operators;
 mod sorts;
 mod terms;
+mod value;
 
 use crate::script::Script;
 use crate::term::Term;
+
+pub use value::read_value;
 
 /// A benchmark that was read: what it declares, and what it asserts before its check.
 ///

@@ -1,15 +1,28 @@
 //! Sorts, and small pieces of syntax.
 
 use super::commands::Reader;
-use super::lexer::Token;
 use super::{Trouble, shown};
+use crate::lexer::{Context, Token};
+use crate::name::is_reserved;
 use crate::term::Sort;
 
 impl<'t> Reader<'t> {
     /// The next token, which there has to be.
     pub(super) fn token(&mut self) -> Result<(usize, Token<'t>), Trouble> {
-        let end = self.lexer.text().len();
-        self.lexer.next()?.ok_or_else(|| Trouble::syntax(end, "the text ends inside of a command"))
+        let end = self.tokens.text().len();
+        self.next()?.ok_or_else(|| Trouble::syntax(end, "the text ends inside of a command"))
+    }
+
+    /// The next token, with the place where it begins; `None` at the end.
+    pub(super) fn next(&mut self) -> Result<Option<(usize, Token<'t>)>, Trouble> {
+        let Some((place, token)) = self.tokens.next() else { return Ok(None) };
+        let what = match token {
+            Token::Strange(text) => format!("{} is no symbol and no constant", shown(text)),
+            Token::Endless(Context::Text) => "a string has no end".to_owned(),
+            Token::Endless(_) => "a quoted symbol has no end".to_owned(),
+            token => return Ok(Some((place.start, token))),
+        };
+        Err(Trouble::syntax(place.start, what))
     }
 
     pub(super) fn open(&mut self) -> Result<usize, Trouble> {
@@ -100,9 +113,4 @@ impl<'t> Reader<'t> {
         }
         Ok(())
     }
-}
-
-/// Whether a word is no symbol.
-pub(super) fn is_reserved(word: &str) -> bool {
-    matches!(word, "!" | "_" | "as" | "exists" | "forall" | "let" | "match" | "par")
 }

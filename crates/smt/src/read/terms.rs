@@ -1,12 +1,12 @@
 //! Terms, on a stack of what has begun.
 
 use super::commands::Reader;
-use super::lexer::Token;
 use super::names::Meaning;
 use super::operators::Operator;
-use super::sorts::is_reserved;
+use super::value::{decimal, vector};
 use super::{Trouble, shown};
-use crate::rational::Rational;
+use crate::lexer::Token;
+use crate::name::is_reserved;
 use crate::term::{Sort, Term};
 use crate::value::Value;
 
@@ -269,7 +269,7 @@ impl<'t> Reader<'t> {
                 _ => self.symbol(at, name),
             },
             Token::Number(digits) => {
-                let value = number(digits).ok_or_else(|| large(digits))?;
+                let value = decimal(digits).ok_or_else(|| large(digits))?;
                 Ok(self.terms().constant(value))
             }
             Token::Hex(digits) => {
@@ -281,7 +281,7 @@ impl<'t> Reader<'t> {
                 self.vector(at, bits, digits.len())
             }
             Token::Text => Err(Trouble::unsupported(at, "a string")),
-            Token::Open | Token::Close | Token::Keyword(_) => Err(Trouble::syntax(at, "a term is missing")),
+            _ => Err(Trouble::syntax(at, "a term is missing")),
         }
     }
 
@@ -294,27 +294,15 @@ impl<'t> Reader<'t> {
     }
 
     fn vector(&mut self, at: usize, bits: u128, width: usize) -> Result<Term, Trouble> {
-        let width = u32::try_from(width).ok().filter(|width| (1..=128).contains(width));
-        let Some(width) = width else {
+        if !(1..=128).contains(&width) {
             return Err(Trouble::unsupported(at, "a bit-vector without bits, or with more than 128"));
-        };
-        if bits.checked_shr(width).is_some_and(|rest| rest != 0) {
-            return Err(Trouble::syntax(at, format!("{bits} has more than {width} bits")));
         }
-        Ok(self.terms().constant(Value::Bv { width, bits }))
+        let value = vector(width, bits);
+        let value = value.ok_or_else(|| Trouble::syntax(at, format!("{bits} has more than {width} bits")))?;
+        Ok(self.terms().constant(value))
     }
 }
 
 fn is_number(text: &str) -> bool {
     !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
-}
-
-/// A numeral or decimal, if it fits.
-fn number(digits: &str) -> Option<Value> {
-    let Some((whole, fraction)) = digits.split_once('.') else {
-        return Some(Value::Int(digits.parse().ok()?));
-    };
-    let fraction = fraction.trim_end_matches('0');
-    let denominator = 10_i128.checked_pow(u32::try_from(fraction.len()).ok()?)?;
-    Some(Value::Real(Rational::new(format!("{whole}{fraction}").parse().ok()?, denominator)?))
 }

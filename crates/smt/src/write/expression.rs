@@ -1,16 +1,10 @@
 //! Prints one term, iteratively. Terms that are named at the top are printed as their names; under
 //! a binder, shared terms that depend on its variables are bound by `let`.
-//!
-//! rsmt2's traits are the way in; beneath them everything is written token by token, since a script has millions.
 
 use std::cell::RefCell;
 use std::io;
 
-use rsmt2::SmtRes;
-use rsmt2::print::{Expr2Smt, Sort2Smt as _, Sym2Smt};
-
 use super::free::Free;
-use super::io_error;
 use super::node_set::NodeSet;
 use crate::name::{SortName, SymbolName, write_number};
 use crate::term::{Op, Term};
@@ -25,19 +19,13 @@ pub(crate) struct SharedName {
 }
 
 impl SharedName {
-    fn write(&self, w: &mut impl io::Write) -> io::Result<()> {
+    pub(super) fn write(&self, w: &mut impl io::Write) -> io::Result<()> {
         w.write_all(b"$")?;
         if self.series > 0 {
             write_number(w, self.series.into())?;
             w.write_all(b".")?;
         }
         write_number(w, self.term.index() as u64)
-    }
-}
-
-impl Sym2Smt for SharedName {
-    fn sym_to_smt2<W: io::Write>(&self, w: &mut W, _: ()) -> SmtRes<()> {
-        Ok(self.write(w)?)
     }
 }
 
@@ -90,14 +78,8 @@ pub(crate) struct Expression<'a> {
     pub(crate) define: bool,
 }
 
-impl Expr2Smt for Expression<'_> {
-    fn expr_to_smt2<W: io::Write>(&self, w: &mut W, _: ()) -> SmtRes<()> {
-        Ok(self.write(w)?)
-    }
-}
-
 impl Expression<'_> {
-    fn write<W: io::Write>(&self, w: &mut W) -> io::Result<()> {
+    pub(super) fn write<W: io::Write>(&self, w: &mut W) -> io::Result<()> {
         // Most terms of most scripts are literals of clauses.
         if !self.define && self.leaf(w, self.term, false)? {
             return Ok(());
@@ -284,7 +266,7 @@ impl Walk<'_> {
             SymbolName::new(self.of.terms, variable).write(w)?;
             w.write_all(b" ")?;
             let sort = SortName { terms: self.of.terms, sort: self.of.terms.sort(variable) };
-            sort.sort_to_smt2(w).map_err(io_error)?;
+            sort.write(w)?;
             w.write_all(b")")?;
         }
         w.write_all(b") ")?;

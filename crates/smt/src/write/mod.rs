@@ -7,6 +7,7 @@ mod expression;
 mod free;
 mod node_set;
 mod printer;
+mod rsmt2;
 
 use std::io::{self, Write as _};
 
@@ -203,12 +204,4 @@ fn text_of(write: impl FnOnce(&mut Vec<u8>) -> io::Result<()>) -> String {
     // Writing to a vector cannot fail.
     let _ = write(&mut text);
     String::from_utf8_lossy(&text).into_owned()
-}
-
-/// The input-output error in an error of rsmt2.
-fn io_error(error: rsmt2::errors::Error) -> io::Error {
-    match error.0 {
-        rsmt2::errors::ErrorKind::Io(error) => error,
-        other => io::Error::other(other.to_string()),
-    }
 }

@@ -4,12 +4,10 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::io;
 
-use rsmt2::print::{Expr2Smt, Sort2Smt, Sym2Smt};
-
 use super::expression::{Expression, Mark, Scratch, SharedName};
 use super::free::Free;
-use super::io_error;
 use super::node_set::NodeSet;
+use super::rsmt2;
 use crate::features::Features;
 use crate::name::{SortName, SymbolName};
 use crate::term::{Enumeration, Op, Sort, Term};
@@ -130,9 +128,9 @@ impl Printer {
         self.declared += self.undeclared.len();
         while let Some(symbol) = self.undeclared.pop_first() {
             w.write_all(b"(declare-fun ")?;
-            SymbolName::new(terms, symbol).sym_to_smt2(w, ()).map_err(io_error)?;
+            rsmt2::symbol(w, &SymbolName::new(terms, symbol))?;
             w.write_all(b" () ")?;
-            SortName { terms, sort: terms.sort(symbol) }.sort_to_smt2(w).map_err(io_error)?;
+            rsmt2::sort(w, &SortName { terms, sort: terms.sort(symbol) })?;
             w.write_all(b")\n")?;
         }
         Ok(())
@@ -244,11 +242,11 @@ impl Printer {
             return Ok(());
         }
         w.write_all(b"(define-fun ")?;
-        SharedName { series: self.series, term: t }.sym_to_smt2(w, ()).map_err(io_error)?;
+        rsmt2::symbol(w, &SharedName { series: self.series, term: t })?;
         w.write_all(b" () ")?;
-        SortName { terms, sort: terms.sort(t) }.sort_to_smt2(w).map_err(io_error)?;
+        rsmt2::sort(w, &SortName { terms, sort: terms.sort(t) })?;
         w.write_all(b" ")?;
-        self.expression(terms, t, true).expr_to_smt2(w, ()).map_err(io_error)?;
+        rsmt2::expression(w, &self.expression(terms, t, true))?;
         w.write_all(b")\n")?;
         self.marks[t.index()].name();
         Ok(())
@@ -259,7 +257,7 @@ impl Printer {
     /// # Errors
     /// When writing fails.
     pub fn term(&self, w: &mut impl io::Write, terms: &Terms, t: Term) -> io::Result<()> {
-        self.expression(terms, t, false).expr_to_smt2(w, ()).map_err(io_error)
+        rsmt2::expression(w, &self.expression(terms, t, false))
     }
 
     /// Whether the symbol has occurred in what was scanned.

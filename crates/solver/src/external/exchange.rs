@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use hyperplan_smt::{Script, Term, Value};
+use hyperplan_smt::{Script, Term, Value, read_value};
 
 use super::process::{Next, Process};
 use super::program::Program;
@@ -190,7 +190,7 @@ impl Exchange {
         let values = reply::values(reply).filter(|values| values.len() == symbols.len())?;
         let pairs = values.into_iter().zip(symbols);
         let terms = &script.terms;
-        pairs.map(|(text, &symbol)| reply::value_of_sort(terms, terms.sort(symbol), text)).collect()
+        pairs.map(|(text, &symbol)| read_value(terms, terms.sort(symbol), text)).collect()
     }
 
     /// It ended without the reply that was due.

@@ -12,7 +12,6 @@ mod process;
 mod profile;
 mod program;
 mod reply;
-mod sexpr;
 mod standalone;
 mod version;
 mod watchdog;

@@ -1,10 +1,9 @@
 //! Models as solvers print them: by `(get-model)` in any of its notations, or by `(get-value (...))`.
 
-use hyperplan_smt::{Term, Terms, Value, symbol_text};
+use hyperplan_smt::{Term, Terms, Value, parts, read_value, symbol_text};
 use rustc_hash::FxHashMap;
 
-use super::reply::{Meaning, Reply, Splitter, meaning, value_of_sort};
-use super::sexpr::parts;
+use super::reply::{Meaning, Reply, Splitter, meaning};
 
 /// A model that was printed: what each symbol is, as written.
 #[derive(Clone, Debug, Default)]
@@ -120,7 +119,7 @@ impl PrintedModel {
     pub fn value(&self, terms: &Terms, symbol: Term) -> Result<Option<Value>, PrintedModelError> {
         let name = symbol_text(terms, symbol);
         let Some(text) = self.values.get(bare(&name)) else { return Ok(None) };
-        let value = value_of_sort(terms, terms.sort(symbol), text);
+        let value = read_value(terms, terms.sort(symbol), text);
         let cannot = || PrintedModelError::Value { symbol: name, value: text.chars().take(100).collect() };
         value.map(Some).ok_or_else(cannot)
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use hyperplan_smt::Value;
+use hyperplan_smt::{Terms, Value, read_value};
 
 use super::process::{Next, Process};
 use super::profile::{FILE, Profile};
@@ -205,7 +205,7 @@ fn judge(reply: &Reply, expected: Expected) -> Ability {
         }
         (Expected::Sat | Expected::Unsat, Meaning::Answer(Some(_))) => wrong(),
         (Expected::Value(value), Meaning::Other) => match reply::values(reply).as_deref() {
-            Some([said]) if reply::value(said) == Some(value) => Ability::Able,
+            Some([said]) if read_value(&Terms::new(), value.sort(), said) == Some(value) => Ability::Able,
             Some(_) => wrong(),
             None => Ability::Unable,
         },
