@@ -1,42 +1,10 @@
 //! Random problems.
 
+pub use hyperplan_random::Random;
+
 use crate::brute::Brute;
 use crate::conformant::conformant;
 use crate::model::{Atom, Formula, Interval, Kind, Observe, Problem, Rule, Semantics, System};
-
-/// A reproducible source of numbers (SplitMix64).
-#[derive(Clone, Debug)]
-pub struct Random(u64);
-
-impl Random {
-    /// The same seed gives the same numbers.
-    #[must_use]
-    pub fn new(seed: u64) -> Self {
-        Random(seed)
-    }
-
-    /// A number below `n`, which must not be 0.
-    pub fn below(&mut self, n: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        usize::try_from((z ^ (z >> 31)) % n as u64).unwrap_or(0)
-    }
-
-    pub(crate) fn bound(&mut self, n: u32) -> u32 {
-        u32::try_from(self.below(n as usize)).unwrap_or(0)
-    }
-
-    /// True once in `n` times.
-    pub(crate) fn once_in(&mut self, n: usize) -> bool {
-        self.below(n) == 0
-    }
-
-    fn subset(&mut self, n: usize, once_in: usize) -> Vec<usize> {
-        (0..n).filter(|_| self.once_in(once_in)).collect()
-    }
-}
 
 /// Most tuples of paths that a problem may have.
 const MOST_TUPLES: usize = 60_000;

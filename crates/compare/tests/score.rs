@@ -151,13 +151,8 @@ fn versions_tell_contestants_apart() {
 
 #[test]
 fn random_contests_add_up() {
-    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
-    let mut random = move |below: usize| {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        usize::try_from(state >> 33).expect("31 bits fit") % below
-    };
+    let mut numbers = hyperplan_random::Random::new(1);
+    let mut random = |below| numbers.below(below);
     for round in 0..300 {
         let statuses = [
             Status::Sat,

@@ -2,22 +2,22 @@
 
 mod pool;
 
+use hyperplan_random::property;
 use hyperplan_smt::{Evaluation, Sort, Term, Terms};
-use pool::{Pool, Random, to_value};
+use pool::{Pool, to_value};
 
 #[test]
 fn folding_and_evaluation_agree_with_the_interpreter() {
-    for seed in 0..1000 {
-        let mut random = Random(seed);
-        let pool = Pool::grown(&mut random, 120);
+    property(1000, 3000, |random| {
+        let pool = Pool::grown(random, 120);
         let evaluation = Evaluation::new(&pool.terms, &pool.model);
         for sample in &pool.samples {
             let expected = to_value(sample.value);
-            assert_eq!(pool.terms.sort(sample.open), expected.sort(), "seed {seed}");
-            assert_eq!(pool.terms.value(sample.folded), Some(expected), "folding, seed {seed}");
-            assert_eq!(evaluation.value(&pool.terms, sample.open), Some(expected), "evaluation, seed {seed}");
+            assert_eq!(pool.terms.sort(sample.open), expected.sort());
+            assert_eq!(pool.terms.value(sample.folded), Some(expected), "folding");
+            assert_eq!(evaluation.value(&pool.terms, sample.open), Some(expected), "evaluation");
         }
-    }
+    });
 }
 
 #[test]

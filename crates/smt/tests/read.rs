@@ -4,11 +4,12 @@ mod pool;
 
 use std::collections::BTreeMap;
 
+use hyperplan_random::{Random, property};
 use hyperplan_smt::{
     Ask, Evaluation, Model, Rational, Script, Sort, Term, Value, Verdict, WriteOptions, read_script,
     symbol_text, write_script,
 };
-use pool::{Pool, Random};
+use pool::Pool;
 
 /// A script of random assertions over random terms of all sorts, some of them quantified.
 fn script(random: &mut Random) -> Script {
@@ -59,7 +60,7 @@ fn script(random: &mut Random) -> Script {
 fn value(random: &mut Random, sort: Sort) -> Value {
     match sort {
         Sort::Bool => Value::Bool(random.below(2) == 1),
-        Sort::BitVec(width) => Value::bv(i128::from(random.next()), width),
+        Sort::BitVec(width) => Value::bv(i128::from(random.number()), width),
         Sort::Int => Value::Int(random.below(21) as i128 - 10),
         Sort::Real => {
             let r = Rational::new(random.below(21) as i128 - 10, 1 + random.below(3) as i128);
@@ -71,31 +72,27 @@ fn value(random: &mut Random, sort: Sort) -> Value {
 
 #[test]
 fn what_is_written_is_read() {
-    for seed in 0..400 {
-        let mut random = Random(seed);
-        let script = script(&mut random);
+    property(400, 3000, |random| {
+        let script = script(random);
         let ask = [Ask::Answer, Ask::Model, Ask::Core][random.below(3)];
         let mut text = Vec::new();
         write_script(&mut text, &script, &WriteOptions { ask, ..WriteOptions::default() })
             .expect("vectors can be written to");
         let text = String::from_utf8(text).expect("all names are text");
-        let read = read_script(&text).unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
-        assert_eq!(read.assertions, script.len(), "seed {seed}");
-        assert_eq!(read.origins.len(), read.script.len(), "seed {seed}");
+        let read = read_script(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        assert_eq!(read.assertions, script.len());
+        assert_eq!(read.origins.len(), read.script.len());
         let lines: Vec<&str> = text.lines().collect();
-        assert!(
-            read.origins.iter().all(|origin| lines[origin.line - 1].starts_with("(assert ")),
-            "seed {seed}"
-        );
+        assert!(read.origins.iter().all(|origin| lines[origin.line - 1].starts_with("(assert ")), "{text}");
         let names: BTreeMap<String, Term> =
             script.symbols().into_iter().map(|symbol| (symbol_text(&script.terms, symbol), symbol)).collect();
-        assert_eq!(read.symbols.len(), names.len(), "seed {seed}");
+        assert_eq!(read.symbols.len(), names.len());
         let mut decided = 0;
         for _ in 0..10 {
             let (mut model, mut same) = (Model::new(), Model::new());
             for &symbol in &read.symbols {
                 let written = names[&symbol_text(&read.script.terms, symbol)];
-                let value = value(&mut random, script.terms.sort(written));
+                let value = value(random, script.terms.sort(written));
                 model.insert(written, value);
                 // The only enumeration is the first of either.
                 same.insert(symbol, value);
@@ -112,12 +109,12 @@ fn what_is_written_is_read() {
                 // What was seen to be true or false when it was read may have been unknown before.
                 if expected != Verdict::Unknown {
                     decided += 1;
-                    assert_eq!(found, expected, "seed {seed}, assertion {index}\n{text}");
+                    assert_eq!(found, expected, "assertion {index}\n{text}");
                 }
             }
         }
-        assert!(decided > 0, "seed {seed}");
-    }
+        assert!(decided > 0, "{text}");
+    });
 }
 
 /// Pieces of texts put together at random: whatever comes of it, it is no panic.
@@ -174,12 +171,11 @@ fn nothing_makes_the_reader_panic() {
         "((_ rotate_left 7) ",
         "(abs ",
     ];
-    for seed in 0..3000 {
-        let mut random = Random(seed);
+    property(3000, 3000, |random| {
         let mut text = if random.below(2) == 0 {
             "(declare-const x Int)(declare-const p Bool)(declare-const v (_ BitVec 3))(assert ".to_owned()
         } else {
-            let script = script(&mut random);
+            let script = script(random);
             let mut text = Vec::new();
             write_script(&mut text, &script, &WriteOptions::default()).expect("vectors can be written to");
             String::from_utf8(text).expect("all names are text")
@@ -202,6 +198,6 @@ fn nothing_makes_the_reader_panic() {
             }
         }
         let read = std::panic::catch_unwind(|| read_script(&text).map(|read| read.assertions));
-        assert!(read.is_ok(), "seed {seed}\n{text}");
-    }
+        assert!(read.is_ok(), "{text}");
+    });
 }

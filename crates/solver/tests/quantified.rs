@@ -3,7 +3,8 @@
 
 mod common;
 
-use common::{Random, installed};
+use common::installed;
+use hyperplan_random::Random;
 use hyperplan_smt::{Script, Sort, Stem, Term, Terms};
 use hyperplan_solver::{Answer, Deadline, Options, Spec, open};
 
@@ -120,7 +121,7 @@ fn quantifiers_mean_their_expansion() {
         let mut script = Script::new();
         let mut contingent = 0;
         for seed in 0..300 {
-            let mut random = Random(seed);
+            let mut random = Random::new(seed);
             // The same names for free and bound variables: they must not capture each other.
             let stem = script.terms.stem("x");
             let stems = Stems { free: stem, bound: stem };

@@ -2,7 +2,8 @@
 
 mod common;
 
-use common::{Growing, Random, installed};
+use common::{Growing, installed};
+use hyperplan_random::Random;
 use hyperplan_smt::Term;
 use hyperplan_solver::{Answer, Catalog, Deadline, Options, Spec, open};
 use std::path::Path;
@@ -11,7 +12,7 @@ fn agrees(spec: &Spec, seeds: std::ops::Range<u64>) {
     let options = Options { incremental: true, ..Options::default() };
     let (mut sat, mut unsat) = (0, 0);
     for seed in seeds {
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let mut growing = Growing::new();
         let mut session = open(spec, &options).expect("it is installed");
         for round in 0..6 {

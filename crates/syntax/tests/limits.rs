@@ -3,6 +3,7 @@
 mod common;
 
 use common::{SOURCE, faults};
+use hyperplan_random::property;
 use hyperplan_syntax::ast::{ExprKind, Item};
 use hyperplan_syntax::{MAX_NESTING, SourceMap, parse, render};
 
@@ -94,18 +95,6 @@ fn long_files_are_fine() {
     assert_eq!(faults(&text).len(), 51);
     let row = format!("system S = grid {{ {} }}", "\"....\"\n".repeat(10_000));
     common::good(&row);
-}
-
-/// A small generator (Marsaglia's xorshift): the same numbers for the same seed everywhere.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, bound: usize) -> usize {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 % bound as u64) as usize
-    }
 }
 
 const PIECES: &[&str] = &[
@@ -214,43 +203,41 @@ const PIECES: &[&str] = &[
 ];
 
 /// Parses and renders; what matters is that it ends without a panic, and spans lie in the text.
-fn survives(text: &str, seed: u64) {
+fn survives(text: &str) {
     let parsed = std::panic::catch_unwind(|| parse(SOURCE, text));
-    let Ok((_, errors)) = parsed else { panic!("seed {seed}: {text:?}") };
+    let Ok((_, errors)) = parsed else { panic!("{text:?}") };
     for span in errors
         .iter()
         .flat_map(|error| error.span.into_iter().chain(error.related.iter().map(|place| place.0)))
     {
-        assert!(text.get(span.range()).is_some(), "seed {seed}: {span:?} in {text:?}");
+        assert!(text.get(span.range()).is_some(), "{span:?} in {text:?}");
     }
-    assert!(errors.len() <= 51, "seed {seed}: {text:?}");
+    assert!(errors.len() <= 51, "{text:?}");
     let mut sources = SourceMap::new();
     sources.add("random.hp", text);
     let shown = render(&sources, &errors, false, 80);
-    assert!(shown.matches("random.hp").count() >= errors.len().min(50), "seed {seed}: {text:?}\n{shown}");
+    assert!(shown.matches("random.hp").count() >= errors.len().min(50), "{text:?}\n{shown}");
     assert_eq!(render(&sources, &errors, false, 80), shown);
 }
 
 #[test]
 fn random_tokens_never_panic() {
-    for seed in 1..=3000_u64 {
-        let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+    property(3000, 200, |random| {
         let length = random.below(80);
         let mut text = String::new();
         for _ in 0..length {
             text.push_str(PIECES[random.below(PIECES.len())]);
             text.push_str(["", " ", " ", " "][random.below(4)]);
         }
-        survives(&text, seed);
-    }
+        survives(&text);
+    });
 }
 
 #[test]
 fn damaged_files_never_panic() {
     const SOUND: &str = "// c\nconst T = 6;\nsystem Rooms {\n  state x: 0..2, y: {a, b};\n  action left, up;\n  on left | up when y == a { x' = x - 1; y' in {a, b}; }\n  label goal = x in 0..1 & (x, y) in {(0, a)};\n}\nsystem W = grid { \"..G\" \"S..\" } { legend 'W' = #; }\nobjective o within 2*T semantics pes {\n  define r(p) = goal[p];\n  exists p. forall q: Rooms. G[0,T] (r(p) -> if r(q) then x[q] == 1 else F goal[q] U[2] goal[p])\n}\nobjective s = t(goal, T);\n";
     common::good(SOUND);
-    for seed in 1..=3000_u64 {
-        let mut random = Random(seed.wrapping_mul(0xD134_2543_DE82_EF95));
+    property(3000, 20, |random| {
         let mut text: Vec<char> = SOUND.chars().collect();
         for _ in 0..=random.below(4) {
             let at = random.below(text.len());
@@ -265,6 +252,6 @@ fn damaged_files_never_panic() {
                 }
             }
         }
-        survives(&text.into_iter().collect::<String>(), seed);
-    }
+        survives(&text.into_iter().collect::<String>());
+    });
 }

@@ -4,6 +4,7 @@ mod common;
 mod random;
 
 use common::{SOURCE, good};
+use hyperplan_random::{Random, property};
 use hyperplan_syntax::{parse, print};
 use random::roundtrip::{self, without_places};
 use std::path::{Path, PathBuf};
@@ -54,14 +55,14 @@ fn all_problem_files() {
 /// Trees are the same after printing and parsing.
 #[test]
 fn random_trees() {
-    for seed in 0..150 {
-        let file = random::tree::file(&mut random::Random(seed));
+    property(150, 5000, |random| {
+        let file = random::tree::file(random);
         let printed = print(&file, "");
         let (again, errors) = parse(SOURCE, &printed);
-        assert!(errors.is_empty(), "seed {seed}: {:?}\n{printed}", errors[0]);
-        assert!(without_places(&again) == without_places(&file), "seed {seed}: another tree\n{printed}");
-        assert!(print(&again, &printed) == formatted(&printed), "seed {seed}");
-    }
+        assert!(errors.is_empty(), "{:?}\n{printed}", errors[0]);
+        assert!(without_places(&again) == without_places(&file), "another tree\n{printed}");
+        assert!(print(&again, &printed) == formatted(&printed), "another text\n{printed}");
+    });
 }
 
 /// Texts that were damaged are parsed without a panic, every place of a message lies in the text, and what is still a
@@ -73,7 +74,7 @@ fn damaged_texts() {
     let mut sound = 0;
     let mut seed = 0;
     while seed < 100 || start.elapsed() < Duration::from_secs(1) {
-        let mut random = random::Random(seed);
+        let mut random = Random::new(seed);
         let (text, other) = (&texts[random.below(texts.len())], &texts[random.below(texts.len())]);
         let text = random::damage::damaged(&mut random, text, other, random::damage::PIECES);
         let survived = std::panic::catch_unwind(|| survives(&text));

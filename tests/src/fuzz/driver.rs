@@ -1,9 +1,9 @@
 //! Runs a target on its corpus and on damaged inputs of it.
 
 use super::Target;
-use super::text::Random;
 use super::text::damage::damaged;
 use crate::{deadline, number, say};
+use hyperplan_random::Random;
 use std::fs;
 use std::panic::catch_unwind;
 use std::path::{Path, PathBuf};
@@ -34,7 +34,7 @@ pub fn run(target: Target) {
         if trace {
             say(&format!("{}: HYPERPLAN_SEED={seed}", target.name));
         }
-        let input = mutated(&mut Random(seed), &corpus, target);
+        let input = mutated(&mut Random::new(seed), &corpus, target);
         guarded(target, &input, &format!("HYPERPLAN_SEED={seed}"));
         seed = seed.wrapping_add(1);
     }

@@ -20,7 +20,7 @@ pub struct Target {
     /// Pieces of text that matter in such inputs.
     pieces: &'static [&'static str],
     /// Where not all inputs come from the corpus: a random one.
-    random: Option<fn(&mut text::Random) -> String>,
+    random: Option<fn(&mut hyperplan_random::Random) -> String>,
 }
 
 const fn target(name: &'static str, body: fn(&[u8]), pieces: &'static [&'static str]) -> Target {

@@ -1,8 +1,9 @@
 //! Problem files.
 
 use super::text::roundtrip::{formatted, without_places};
-use super::text::{Random, tree};
+use super::text::tree;
 use hyperplan_problem::{Lowered, Overrides, display, read};
+use hyperplan_random::Random;
 use hyperplan_syntax::{Diagnostic, SourceId, SourceMap, parse, print, render, to_json};
 
 /// Reads a problem; what has no errors is formatted, and means the same afterwards.

@@ -4,25 +4,14 @@ use super::{Lasts, node};
 use hyperplan_problem::{
     Expr, Formula, FormulaId, Interval, LabelId, Leaf, Node, PathId, PathLeaf, TemporalOp,
 };
+use hyperplan_random::{Random, property};
 use hyperplan_syntax::{SourceId, Span};
+use std::cell::Cell;
 use typed_index_collections::TiVec;
 
-/// SplitMix64.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, n: u32) -> u32 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        u32::try_from((z ^ (z >> 31)) % u64::from(n)).expect("below a small number")
-    }
-
-    fn interval(&mut self) -> Interval {
-        let lo = self.below(3);
-        Interval { lo, hi: Some(lo + self.below(3)) }
-    }
+fn interval(random: &mut Random) -> Interval {
+    let lo = random.bound(3);
+    Interval { lo, hi: Some(lo + random.bound(3)) }
 }
 
 /// The labels that hold at each position.
@@ -45,11 +34,11 @@ fn pair(random: &mut Random) -> [Formula; 2] {
         add(Node::Atom(leaf.clone()), Node::Atom(leaf));
     }
     for size in 2..5 {
-        let mut operand = || FormulaId::from(random.below(size) as usize);
+        let mut operand = || FormulaId::from(random.below(size));
         let (x, y) = (operand(), operand());
         let same = random.below(3) == 0;
-        let i = random.interval();
-        let j = if same { i } else { random.interval() };
+        let i = interval(random);
+        let j = if same { i } else { interval(random) };
         let temporal = |op| (Node::Temporal(op, i, x, y), Node::Temporal(op, j, x, y));
         let twice = |node: Node| (node.clone(), node);
         let (a, b) = match random.below(12) {
@@ -101,14 +90,13 @@ fn holds(formula: &Formula, id: FormulaId, word: &[[bool; 2]], at: usize) -> boo
 
 #[test]
 fn what_is_said_to_last_does() {
-    let mut random = Random(7);
-    let (mut up, mut down) = (0, 0);
-    for case in 0..30_000 {
-        let [earlier, later] = pair(&mut random);
+    let (up, down) = (Cell::new(0), Cell::new(0));
+    property(30_000, 100, |random| {
+        let [earlier, later] = pair(random);
         // Words of infinite paths are longer than anything reads.
-        let longer = case % 2 == 0;
-        let (cut, whole) = if longer { (1 + random.below(4) as usize, 8) } else { (24, 24) };
-        let word = word(&mut random, whole);
+        let longer = random.flip();
+        let (cut, whole) = if longer { (1 + random.below(4), 8) } else { (24, 24) };
+        let word = word(random, whole);
         let mut lasts: TiVec<FormulaId, Lasts> = TiVec::new();
         for (a, b) in earlier.nodes.iter().zip(&later.nodes) {
             lasts.push(node(a, b, longer, &lasts).expect("nodes of one kind"));
@@ -116,17 +104,12 @@ fn what_is_said_to_last_does() {
         for (id, lasts) in lasts.iter_enumerated() {
             for at in 0..cut.min(6) {
                 let (before, after) = (holds(&earlier, id, &word[..cut], at), holds(&later, id, &word, at));
-                assert!(!lasts.up || !before || after, "case {case}: {:?} {:?}", earlier.nodes, later.nodes);
-                assert!(
-                    !lasts.down || !after || before,
-                    "case {case}: {:?} {:?}",
-                    earlier.nodes,
-                    later.nodes
-                );
-                up += u32::from(lasts.up && before);
-                down += u32::from(lasts.down && after);
+                assert!(!lasts.up || !before || after, "{:?} {:?}", earlier.nodes, later.nodes);
+                assert!(!lasts.down || !after || before, "{:?} {:?}", earlier.nodes, later.nodes);
+                up.set(up.get() + u32::from(lasts.up && before));
+                down.set(down.get() + u32::from(lasts.down && after));
             }
         }
-    }
-    assert!(up > 100_000 && down > 100_000, "{up} {down}");
+    });
+    assert!(up.get() > 100_000 && down.get() > 100_000, "{} {}", up.get(), down.get());
 }

@@ -1,23 +1,7 @@
 //! Random terms with their values.
 
+use hyperplan_random::Random;
 use hyperplan_smt::{Model, Term, Terms, Value};
-
-/// splitmix64.
-pub(crate) struct Random(pub(crate) u64);
-
-impl Random {
-    pub(crate) fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    pub(crate) fn below(&mut self, bound: usize) -> usize {
-        (self.next() % bound as u64) as usize
-    }
-}
 
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) enum Plain {
@@ -54,8 +38,8 @@ impl Pool {
         for i in 0..14 {
             let value = match i % 4 {
                 0 => Plain::Bool(random.below(2) == 1),
-                1 => Plain::Bits(3, random.next() & 7),
-                2 => Plain::Bits(5, random.next() & 31),
+                1 => Plain::Bits(3, random.number() & 7),
+                2 => Plain::Bits(5, random.number() & 31),
                 _ => Plain::Int(random.below(21) as i64 - 10),
             };
             let stem = pool.terms.stem(&format!("s{i}"));
@@ -84,12 +68,8 @@ impl Pool {
     }
 
     fn pick(&self, random: &mut Random, fits: impl Fn(Plain) -> bool) -> Sample {
-        loop {
-            let sample = self.samples[random.below(self.samples.len())];
-            if fits(sample.value) {
-                return sample;
-            }
-        }
+        let fitting: Vec<&Sample> = self.samples.iter().filter(|sample| fits(sample.value)).collect();
+        *fitting[random.below(fitting.len())]
     }
 
     fn pick_bool(&self, random: &mut Random) -> (Sample, bool) {

@@ -1,25 +1,9 @@
 //! What the tests share: random scripts, brute force, and which solvers there are.
 #![allow(dead_code)]
 
+use hyperplan_random::Random;
 use hyperplan_smt::{Evaluation, Model, Script, Sort, Term, Value, Verdict};
 use hyperplan_solver::{Session, discover};
-
-/// splitmix64.
-pub(crate) struct Random(pub u64);
-
-impl Random {
-    pub(crate) fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    pub(crate) fn below(&mut self, bound: usize) -> usize {
-        (self.next() % bound as u64) as usize
-    }
-}
 
 /// The names of the external solvers that are installed, out of those; the rest is said to be
 /// skipped, or is a failure where all are required.

@@ -1,6 +1,6 @@
 //! Texts that are nearly problem files: cut off, spliced, with pieces lost, repeated or put in.
 
-use super::Random;
+use hyperplan_random::Random;
 
 /// Pieces to put in: what the grammar turns on, and what it does not know.
 pub const PIECES: &[&str] = &[

@@ -1,6 +1,6 @@
 //! Random syntax trees, with every form that the parser can give; places are all zero.
 
-use super::Random;
+use hyperplan_random::Random;
 use hyperplan_syntax::ast::{
     ArithOp, BinaryOp, Clause, CompareOp, Const, Define, Expr, ExprKind, File, Ident, Interval, Item,
     Objective, ObjectiveBody, Quantifier, Set, StateDecl, System, SystemItem, SystemKind, Template, Text,
@@ -191,30 +191,30 @@ fn kind(random: &mut Random, depth: u32) -> ExprKind {
     let mut sub = || Box::new(expr(random, depth));
     let (a, b) = (sub(), sub());
     match random.below(16) {
-        0 => ExprKind::Not(a),
-        1 => ExprKind::Neg(a),
-        2 => ExprKind::And(several(random, depth)),
-        3 => ExprKind::Or(several(random, depth)),
-        4 => ExprKind::Implies(a, b),
-        5 => ExprKind::Iff(a, b),
-        6 => ExprKind::Compare(compare(random), a, b),
-        7 => {
+        0 | 1 => leaf(random),
+        2 => ExprKind::Not(a),
+        3 => ExprKind::Neg(a),
+        4 => ExprKind::And(several(random, depth)),
+        5 => ExprKind::Or(several(random, depth)),
+        6 => ExprKind::Implies(a, b),
+        7 => ExprKind::Iff(a, b),
+        8 => ExprKind::Compare(compare(random), a, b),
+        9 => {
             let mut operands = several(random, depth).into_iter();
             let first = operands.next().map(|first| (false, first));
             ExprKind::Sum(first.into_iter().chain(operands.map(|e| (random.flip(), e))).collect())
         }
-        8 => ExprKind::Arith(arith(random), a, b),
-        9 => ExprKind::In(a, set(random, depth)),
-        10 => ExprKind::Tuple(several(random, depth)),
-        11 => ExprKind::If(a, b, Box::new(expr(random, depth))),
-        12 => temporal(random, depth, a),
-        13 => ExprKind::Binary(
+        10 => ExprKind::Arith(arith(random), a, b),
+        11 => ExprKind::In(a, set(random, depth)),
+        12 => ExprKind::Tuple(several(random, depth)),
+        13 => ExprKind::If(a, b, Box::new(expr(random, depth))),
+        14 => temporal(random, depth, a),
+        _ => ExprKind::Binary(
             [BinaryOp::Until, BinaryOp::Release, BinaryOp::WeakUntil][random.below(3)],
             interval(random, depth),
             a,
             b,
         ),
-        _ => leaf(random),
     }
 }
 
