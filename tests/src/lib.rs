@@ -13,6 +13,7 @@ mod conformant;
 pub mod fuzz;
 pub mod model;
 pub mod random;
+pub mod shrink;
 
 /// Tells the person who runs the tests.
 pub fn say(text: &str) {

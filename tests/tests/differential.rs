@@ -11,8 +11,10 @@ use hyperplan_syntax::SourceMap;
 use hyperplan_tests::brute::{Brute, Path};
 use hyperplan_tests::model;
 use hyperplan_tests::random::{Random, problem};
+use hyperplan_tests::shrink::shrunk;
 use hyperplan_tests::{deadline, number, say};
 use hyperplan_verify::{Budget, check, decide};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::str::FromStr;
 use std::time::{Duration, Instant};
 
@@ -43,10 +45,26 @@ fn fixture(text: &str, expected: bool) -> String {
 }
 
 fn lowered(text: &str) -> Problem {
-    let mut sources = SourceMap::new();
-    let lowered = read(&mut sources, "random.hp", text, &NoFiles, &Overrides::default());
+    let lowered = read(&mut SourceMap::new(), "random.hp", text, &NoFiles, &Overrides::default());
     assert!(!lowered.has_errors(), "{text}\n{:#?}", lowered.diagnostics);
     lowered.problem
+}
+
+/// A small problem for which there is something wrong with the answer, as there is for a larger one. What is no problem
+/// any more has no answer.
+fn smallest(
+    problem: &model::Problem,
+    wrong: impl Fn(&model::Problem, &Brute<'_>, &Problem) -> bool,
+) -> String {
+    let fails = |problem: &model::Problem| {
+        let text = problem.to_string();
+        let lowered = read(&mut SourceMap::new(), "random.hp", &text, &NoFiles, &Overrides::default());
+        let brute = Brute::new(problem, 10_000).filter(|_| !lowered.has_errors());
+        brute.is_some_and(|brute| wrong(problem, &brute, &lowered.problem))
+    };
+    let small = shrunk(problem.clone(), fails);
+    let expected = Brute::new(&small, usize::MAX / 8).expect("no limit").verdict();
+    format!("the smallest like it:\n{}", fixture(&small.to_string(), expected))
 }
 
 /// Each verdict must be common enough for the comparison to mean something.
@@ -102,7 +120,12 @@ fn the_checker_decides_as_brute_force_does() {
         let typed = lowered(&text);
         let objective = &typed.objectives[0];
         let answer = decide(&typed, objective, &Budget::default());
-        assert_eq!(answer, Ok(Some(expected)), "seed {seed}\n{text}");
+        if answer != Ok(Some(expected)) {
+            let small = smallest(&random, |_, brute, typed| {
+                decide(typed, &typed.objectives[0], &Budget::default()) != Ok(Some(brute.verdict()))
+            });
+            panic!("seed {seed}: {answer:?}\n{text}{small}");
+        }
         check_some_strategies(&random, &brute, &typed, seed, &text);
     }
     tally.assert_balanced();
@@ -198,6 +221,13 @@ impl Way {
     }
 }
 
+enum Judged {
+    Unknown,
+    Unsupported,
+    Right,
+    Wrong(String),
+}
+
 /// How many answers there were, how many requests were not supported or not decided, and what was wrong.
 #[derive(Default)]
 struct Answers {
@@ -207,6 +237,8 @@ struct Answers {
     unsupported: u64,
     unknown: u64,
     wrong: Vec<String>,
+    /// The first that was wrong.
+    first: Option<(model::Problem, Spec, Way)>,
 }
 
 impl Answers {
@@ -223,28 +255,60 @@ impl Answers {
             if numbers && *solver == Spec::Builtin || !numbers && !finite {
                 continue;
             }
-            match way.answer(&typed, &typed.objectives[0], solver, self.second.clone()) {
-                Ok(Outcome { verdict: Verdict::Unknown, .. }) => self.unknown += 1,
-                Err(error) if error.exit_code() == 2 => self.unsupported += 1,
-                answer => {
+            match self.judged(way, random, &brute, &typed, solver) {
+                Judged::Unknown => self.unknown += 1,
+                Judged::Unsupported => self.unsupported += 1,
+                Judged::Right => self.given += 1,
+                Judged::Wrong(why) => {
                     self.given += 1;
-                    if let Some(why) = wrong(answer, random, &brute, &typed, expected) {
-                        self.wrong.push(format!("{solver:?} {way:?}, seed {seed}: {why}\n{text}"));
-                    }
+                    self.first.get_or_insert_with(|| (random.clone(), solver.clone(), way));
+                    self.wrong.push(format!("{solver:?} {way:?}, seed {seed}: {why}\n{text}"));
                 }
             }
         }
     }
 
+    /// What an answer is worth.
+    fn judged(
+        &self,
+        way: Way,
+        random: &model::Problem,
+        brute: &Brute<'_>,
+        typed: &Problem,
+        solver: &Spec,
+    ) -> Judged {
+        let second = self.second.clone();
+        let answer =
+            catch_unwind(AssertUnwindSafe(|| way.answer(typed, &typed.objectives[0], solver, second)));
+        match answer {
+            Ok(Ok(Outcome { verdict: Verdict::Unknown, .. })) => Judged::Unknown,
+            Ok(Err(error)) if error.exit_code() == 2 => Judged::Unsupported,
+            Ok(answer) => {
+                wrong(answer, random, brute, typed, brute.verdict()).map_or(Judged::Right, Judged::Wrong)
+            }
+            Err(_) => Judged::Wrong("it panics".to_owned()),
+        }
+    }
+
+    /// A small problem like the first whose answer was wrong.
+    fn smallest(&self) -> Option<String> {
+        let (problem, solver, way) = self.first.as_ref()?;
+        let is_wrong = |problem: &model::Problem, brute: &Brute<'_>, typed: &Problem| {
+            matches!(self.judged(*way, problem, brute, typed, solver), Judged::Wrong(_))
+        };
+        Some(format!("{solver:?} {way:?}, {}", smallest(problem, is_wrong)))
+    }
+
     fn report(&self, solver: &str) {
-        let Answers { second: _, given, unsupported, unknown, wrong } = self;
+        let Answers { given, unsupported, unknown, wrong, .. } = self;
         say(&format!("{solver}: {given} answers, {unsupported} not supported, {unknown} unknown"));
         let some: Vec<&str> = wrong.iter().take(3).map(String::as_str).collect();
         assert!(
             wrong.is_empty(),
-            "{} of {given} answers are wrong, such as\n{}",
+            "{} of {given} answers are wrong, such as\n{}\n{}",
             wrong.len(),
-            some.join("\n")
+            some.join("\n"),
+            self.smallest().unwrap_or_default()
         );
         // Small problems leave no excuse; what is not supported is a matter of the way to solve.
         assert!(unknown * 50 <= given + unknown, "{solver} left {unknown} of {} undecided", given + unknown);
