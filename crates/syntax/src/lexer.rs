@@ -16,7 +16,7 @@ use nom_locate::LocatedSpan;
 use crate::diagnostic::Diagnostic;
 use crate::parser::habit;
 use crate::span::{SourceId, Span};
-use crate::token::{RESERVED, SYMBOLS, Tok, Token};
+use crate::token::{SYMBOLS, Tok, Token, reserved};
 
 type Input<'a> = LocatedSpan<&'a str>;
 type Lexed<'a, T> = IResult<Input<'a>, T>;
@@ -185,8 +185,7 @@ fn lexeme<'a>(input: Input<'a>, after_word: bool) -> Lexed<'a, (Lexeme, Input<'a
 fn word(input: Input<'_>) -> Lexed<'_, (Lexeme, Input<'_>)> {
     let letter = satisfy(|c| c.is_ascii_alphabetic() || c == '_');
     let (rest, piece) = recognize(pair(letter, take_while(is_word_character))).parse(input)?;
-    let reserved = RESERVED.iter().find(|(word, _)| word == piece.fragment());
-    Ok((rest, (Lexeme::Good(reserved.map_or(Tok::Ident, |&(_, tok)| tok)), piece)))
+    Ok((rest, (Lexeme::Good(reserved(piece.fragment()).unwrap_or(Tok::Ident)), piece)))
 }
 
 fn is_word_character(c: char) -> bool {
@@ -197,7 +196,7 @@ fn is_word_character(c: char) -> bool {
 #[must_use]
 pub fn is_name(text: &str) -> bool {
     let begins = text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
-    begins && text.chars().all(is_word_character) && RESERVED.iter().all(|(word, _)| *word != text)
+    begins && text.chars().all(is_word_character) && reserved(text).is_none()
 }
 
 /// Digits, with a fraction only where a digit follows the point: `0..2` begins with the number `0`.

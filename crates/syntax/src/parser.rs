@@ -9,7 +9,6 @@ mod expr;
 pub(crate) mod habit;
 mod item;
 mod operand;
-pub(crate) mod operator;
 mod recover;
 mod system;
 

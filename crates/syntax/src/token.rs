@@ -1,6 +1,10 @@
 //! What the lexer hands to the parser.
 
+use crate::ast::CompareOp;
+use crate::operator::{Operator, Row, TABLE, is_word};
 use crate::span::Span;
+use std::cmp::Reverse;
+use std::sync::LazyLock;
 
 /// The kind of a token. Words that are keywords only in some places (`state`, `label`, `when`) are
 /// plain [`Tok::Ident`]s; only words that no name may be have a kind of their own.
@@ -31,22 +35,11 @@ pub(crate) enum Tok {
     Hash,
     Assign,
 
-    EqEq,
-    Ne,
-    Lt,
-    Le,
-    Gt,
-    Ge,
-    Plus,
-    Minus,
-    Star,
-    Slash,
-    Percent,
-    Bang,
-    Amp,
-    Pipe,
-    Arrow,
-    Iff,
+    /// An operator, by its name or another sign for it; `-` is always the one between two operands.
+    Op(Operator),
+    /// A sign of other languages, which is refused with advice.
+    Foreign,
+    ColonEq,
 
     Exists,
     Forall,
@@ -55,28 +48,10 @@ pub(crate) enum Tok {
     If,
     Then,
     Else,
-    In,
-    Div,
-    Next,
-    WeakNext,
-    Finally,
-    Globally,
-    Until,
-    Release,
-    WeakUntil,
-
-    // What other languages write; each is refused with advice.
-    AmpAmp,
-    PipePipe,
-    FatArrow,
-    LtEqGt,
-    LtGt,
-    Wedge,
-    Vee,
-    Tilde,
-    ColonEq,
-    EqLt,
 }
+
+/// `==`
+pub(crate) const EQUALS: Tok = Tok::Op(Operator::Compare(CompareOp::Eq));
 
 /// A token with its text and place.
 #[derive(Clone, Copy, Debug)]
@@ -88,22 +63,8 @@ pub(crate) struct Token<'a> {
     pub(crate) first_on_line: bool,
 }
 
-/// Operators and punctuation. Longer ones stand before their prefixes.
-pub(crate) const SYMBOLS: &[(&str, Tok)] = &[
-    ("<->", Tok::Iff),
-    ("<=>", Tok::LtEqGt),
-    ("->", Tok::Arrow),
-    ("=>", Tok::FatArrow),
-    ("=<", Tok::EqLt),
-    ("==", Tok::EqEq),
-    ("!=", Tok::Ne),
-    ("<=", Tok::Le),
-    (">=", Tok::Ge),
-    ("<>", Tok::LtGt),
-    ("&&", Tok::AmpAmp),
-    ("||", Tok::PipePipe),
-    ("/\\", Tok::Wedge),
-    ("\\/", Tok::Vee),
+/// Punctuation, and the paper's signs for quantifiers.
+const PUNCTUATION: &[(&str, Tok)] = &[
     (":=", Tok::ColonEq),
     ("..", Tok::DotDot),
     ("(", Tok::LParen),
@@ -118,44 +79,27 @@ pub(crate) const SYMBOLS: &[(&str, Tok)] = &[
     (".", Tok::Dot),
     ("#", Tok::Hash),
     ("=", Tok::Assign),
-    ("<", Tok::Lt),
-    (">", Tok::Gt),
-    ("+", Tok::Plus),
-    ("-", Tok::Minus),
-    ("*", Tok::Star),
-    ("/", Tok::Slash),
-    ("%", Tok::Percent),
-    ("!", Tok::Bang),
-    ("&", Tok::Amp),
-    ("|", Tok::Pipe),
-    ("~", Tok::Tilde),
-    // The paper's signs, and those that look like them.
     ("∃", Tok::Exists),
     ("∀", Tok::Forall),
-    ("¬", Tok::Bang),
-    ("∧", Tok::Amp),
-    ("∨", Tok::Pipe),
-    ("⇒", Tok::Arrow),
-    ("→", Tok::Arrow),
-    ("⇔", Tok::Iff),
-    ("↔", Tok::Iff),
-    ("◇", Tok::Finally),
-    ("◊", Tok::Finally),
-    ("♢", Tok::Finally),
-    ("⋄", Tok::Finally),
-    ("□", Tok::Globally),
-    ("◻", Tok::Globally),
-    ("○", Tok::Next),
-    ("◯", Tok::Next),
-    ("𝒰", Tok::Until),
-    ("≠", Tok::Ne),
-    ("≤", Tok::Le),
-    ("≥", Tok::Ge),
-    ("∈", Tok::In),
 ];
 
-/// The words that no variable, label, action or path may be called.
-pub(crate) const RESERVED: &[(&str, Tok)] = &[
+/// Punctuation and the signs of operators, longer ones before their prefixes.
+pub(crate) static SYMBOLS: LazyLock<Vec<(&str, Tok)>> = LazyLock::new(|| {
+    let mut symbols = PUNCTUATION.to_vec();
+    // What has a meaning of its own is listed first, and so found first.
+    for row in TABLE.iter().filter(|row| row.operator != Operator::Neg) {
+        let own = [row.name].into_iter().chain(row.signs.iter().copied());
+        symbols.extend(own.filter(|sign| !is_word(sign)).map(|sign| (sign, Tok::Op(row.operator))));
+    }
+    // `[]` is two brackets to the lexer.
+    let slips = TABLE.iter().flat_map(|row| row.slips.iter().copied());
+    symbols.extend(slips.filter(|sign| !is_word(sign) && *sign != "[]").map(|sign| (sign, Tok::Foreign)));
+    symbols.sort_by_key(|(sign, _)| Reverse(sign.len()));
+    symbols
+});
+
+/// The words besides operators that no variable, label, action or path may be called.
+const KEYWORDS: &[(&str, Tok)] = &[
     ("exists", Tok::Exists),
     ("forall", Tok::Forall),
     ("true", Tok::True),
@@ -163,16 +107,14 @@ pub(crate) const RESERVED: &[(&str, Tok)] = &[
     ("if", Tok::If),
     ("then", Tok::Then),
     ("else", Tok::Else),
-    ("in", Tok::In),
-    ("div", Tok::Div),
-    ("X", Tok::Next),
-    ("N", Tok::WeakNext),
-    ("F", Tok::Finally),
-    ("G", Tok::Globally),
-    ("U", Tok::Until),
-    ("R", Tok::Release),
-    ("W", Tok::WeakUntil),
 ];
+
+/// The token of a word that no name may be.
+pub(crate) fn reserved(word: &str) -> Option<Tok> {
+    let keyword = KEYWORDS.iter().find(|(keyword, _)| *keyword == word).map(|&(_, tok)| tok);
+    let operator = || TABLE.iter().find(|row| row.name == word && row.is_reserved());
+    keyword.or_else(|| operator().map(|row| Tok::Op(row.operator)))
+}
 
 impl Token<'_> {
     /// How messages name it.
@@ -186,6 +128,28 @@ impl Token<'_> {
 
     /// Whether it is a word, reserved or not (and not one of the paper's signs).
     pub(crate) fn is_word(&self) -> bool {
-        self.tok == Tok::Ident || RESERVED.iter().any(|(word, _)| *word == self.text)
+        self.tok == Tok::Ident || reserved(self.text).is_some()
+    }
+
+    /// The operator between two operands that it is; behind an operand a contextual name is one too.
+    pub(crate) fn infix(&self) -> Option<&'static Row> {
+        match self.tok {
+            Tok::Op(operator) => Some(operator.row()).filter(|row| !row.is_prefix()),
+            Tok::Ident => TABLE.iter().find(|row| row.contextual && row.name == self.text),
+            _ => None,
+        }
+    }
+
+    /// The operator before an operand that it is.
+    pub(crate) fn prefix(&self) -> Option<&'static Row> {
+        let Tok::Op(operator) = self.tok else { return None };
+        TABLE.iter().find(|row| row.is_prefix() && row.name == operator.name())
+    }
+
+    /// The operator that a sign or word of another language means, in front of an operand or between two.
+    pub(crate) fn slip(&self, prefix: bool) -> Option<&'static Row> {
+        let slips = |row: &&Row| row.slips.iter().any(|slip| slip.eq_ignore_ascii_case(self.text));
+        let candidate = matches!(self.tok, Tok::Foreign | Tok::Ident | Tok::Assign);
+        TABLE.iter().find(|row| candidate && row.is_prefix() == prefix && slips(row))
     }
 }

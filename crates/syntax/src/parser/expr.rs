@@ -4,10 +4,10 @@
 //! stack. Every node knows its height, which [`MAX_NESTING`] bounds. Where `inline(never)` stands,
 //! it keeps the frames of the functions that do recurse small.
 
-use super::operator::{Infix, Prefix, level};
 use super::{Abort, MAX_NESTING, Parse, Parser};
-use crate::ast::{Expr, ExprKind, Interval, UnaryOp};
+use crate::ast::{Expr, ExprKind, Interval};
 use crate::diagnostic::Diagnostic;
+use crate::operator::{Fixity, Operator, Row, TABLE, level};
 use crate::span::Span;
 use crate::token::Tok;
 
@@ -37,19 +37,19 @@ pub(super) type Bounds = Option<(Interval, u32)>;
 /// An operator that waits for its right operand.
 enum Pending {
     Prefix {
-        op: Prefix,
+        op: &'static Row,
         bounds: Bounds,
         span: Span,
     },
     Infix {
-        op: Infix,
+        op: &'static Row,
         bounds: Bounds,
         span: Span,
         left: Node,
     },
     /// `&`, `|`, or `+` and `-`: what stands to the left, and whether the next operand is subtracted.
     Flat {
-        op: Infix,
+        op: &'static Row,
         items: Vec<(bool, Expr)>,
         start: Span,
         height: u32,
@@ -60,8 +60,7 @@ enum Pending {
 impl Pending {
     fn level(&self) -> u8 {
         match self {
-            Pending::Prefix { op, .. } => op.level(),
-            Pending::Infix { op, .. } | Pending::Flat { op, .. } => op.level(),
+            Pending::Prefix { op, .. } | Pending::Infix { op, .. } | Pending::Flat { op, .. } => op.level,
         }
     }
 }
@@ -107,13 +106,13 @@ impl Parser<'_> {
                     return self.reduce(&mut stack, node, None);
                 };
                 node = self.reduce(&mut stack, node, Some(op))?;
-                if op.level() == level::COMPARE && node.is_bare_comparison() {
+                if op.level == level::COMPARE && node.is_bare_comparison() {
                     self.report(
                         Diagnostic::error("chained-comparison", span, "comparisons cannot be chained")
                             .with_help("write `a < b & b < c`, or put parentheses around one of them"),
                     );
                 }
-                if op == Infix::In {
+                if op.operator == Operator::In {
                     node = self.membership(node)?;
                 } else {
                     self.shift(&mut stack, op, span, node)?;
@@ -125,18 +124,18 @@ impl Parser<'_> {
 
     /// Puts `node OP` on the stack.
     #[inline(never)]
-    fn shift(&mut self, stack: &mut Vec<Pending>, op: Infix, span: Span, node: Node) -> Parse<()> {
+    fn shift(&mut self, stack: &mut Vec<Pending>, op: &'static Row, span: Span, node: Node) -> Parse<()> {
         if stack.len() >= MAX_NESTING as usize {
             return self.too_deep(span);
         }
-        if !op.is_flat() {
-            let bounds = if matches!(op, Infix::Temporal(_)) { self.bounds()? } else { None };
+        if op.fixity != Fixity::Flat {
+            let bounds = if op.interval { self.bounds()? } else { None };
             stack.push(Pending::Infix { op, bounds, span, left: node });
             return Ok(());
         }
-        let next_is_minus = op == Infix::Minus;
+        let next_is_minus = op.operator == Operator::Minus;
         match stack.last_mut() {
-            Some(Pending::Flat { op: same, items, height, minus, .. }) if same.level() == op.level() => {
+            Some(Pending::Flat { op: same, items, height, minus, .. }) if same.level == op.level => {
                 items.push((*minus, *node.expr));
                 *height = node.height.max(*height);
                 *minus = next_is_minus;
@@ -155,11 +154,11 @@ impl Parser<'_> {
     /// Gives `node` to the operators on the stack that bind it more tightly than `next` does; to
     /// all of them where nothing follows.
     #[inline(never)]
-    fn reduce(&mut self, stack: &mut Vec<Pending>, mut node: Node, next: Option<Infix>) -> Parse<Node> {
+    fn reduce(&mut self, stack: &mut Vec<Pending>, mut node: Node, next: Option<&Row>) -> Parse<Node> {
         while let Some(top) = stack.last() {
             if let Some(next) = next {
-                let waits_on_equal = next.is_right_associative() || next.is_flat();
-                if top.level() < next.level() || top.level() == next.level() && waits_on_equal {
+                let waits_on_equal = matches!(next.fixity, Fixity::Right | Fixity::Flat);
+                if top.level() < next.level || top.level() == next.level && waits_on_equal {
                     break;
                 }
             }
@@ -176,10 +175,12 @@ impl Parser<'_> {
                 let (interval, bound_height) = unzip(bounds);
                 let height = right.height.max(bound_height);
                 let operand = right.expr;
-                let kind = match op {
-                    Prefix::Not => ExprKind::Not(operand),
-                    Prefix::Neg => ExprKind::Neg(operand),
-                    Prefix::Temporal(op) => ExprKind::Unary(op, interval, operand),
+                let kind = match op.operator {
+                    Operator::Not => ExprKind::Not(operand),
+                    Operator::Neg => ExprKind::Neg(operand),
+                    Operator::Unary(op) => ExprKind::Unary(op, interval, operand),
+                    // The others stand between operands.
+                    _ => return Err(Abort),
                 };
                 self.inner(kind, span.to(right.outer), height, span)
             }
@@ -188,14 +189,14 @@ impl Parser<'_> {
                 let height = left.height.max(right.height).max(bound_height);
                 let whole = left.outer.to(right.outer);
                 let (left, right) = (left.expr, right.expr);
-                let kind = match op {
-                    Infix::Iff => ExprKind::Iff(left, right),
-                    Infix::Implies => ExprKind::Implies(left, right),
-                    Infix::Temporal(op) => ExprKind::Binary(op, interval, left, right),
-                    Infix::Compare(op) => ExprKind::Compare(op, left, right),
-                    Infix::Arith(op) => ExprKind::Arith(op, left, right),
-                    // `shift` makes none of these: they are flat, or have a set to their right.
-                    Infix::Or | Infix::And | Infix::Plus | Infix::Minus | Infix::In => return Err(Abort),
+                let kind = match op.operator {
+                    Operator::Iff => ExprKind::Iff(left, right),
+                    Operator::Implies => ExprKind::Implies(left, right),
+                    Operator::Binary(op) => ExprKind::Binary(op, interval, left, right),
+                    Operator::Compare(op) => ExprKind::Compare(op, left, right),
+                    Operator::Arith(op) => ExprKind::Arith(op, left, right),
+                    // `shift` makes none of the others: they are flat, or have a set to their right.
+                    _ => return Err(Abort),
                 };
                 self.inner(kind, whole, height, span)
             }
@@ -204,9 +205,9 @@ impl Parser<'_> {
                 let height = height.max(right.height);
                 items.push((minus, *right.expr));
                 let unsigned = |items: Vec<(bool, Expr)>| items.into_iter().map(|(_, item)| item).collect();
-                let kind = match op {
-                    Infix::And => ExprKind::And(unsigned(items)),
-                    Infix::Or => ExprKind::Or(unsigned(items)),
+                let kind = match op.operator {
+                    Operator::And => ExprKind::And(unsigned(items)),
+                    Operator::Or => ExprKind::Or(unsigned(items)),
                     _ => ExprKind::Sum(items),
                 };
                 self.inner(kind, whole, height, start)
@@ -225,16 +226,16 @@ impl Parser<'_> {
 
     /// The operator at the present token, if it binds at least as tightly as `least`.
     #[inline(never)]
-    fn infix(&mut self, least: u8) -> Option<(Infix, Span)> {
+    fn infix(&mut self, least: u8) -> Option<(&'static Row, Span)> {
         let token = self.token();
-        let slip = Infix::of_slip(token.tok, token.text);
-        let op = Infix::of(token.tok).or(slip.map(|(op, _)| op)).filter(|op| op.level() >= least)?;
+        let own = token.infix();
+        let op = own.or_else(|| token.slip(false)).filter(|op| op.level >= least)?;
         self.bump();
-        if let Some((_, right)) = slip {
+        if own.is_none() {
             let message = format!("`{}` is not an operator here", token.text);
-            let help = match token.tok {
-                Tok::FatArrow => "write `->` for implication, `>=` for \"at least\"".to_owned(),
-                _ => format!("write `{right}`"),
+            let help = match token.text {
+                "=>" => "write `->` for implication, `>=` for \"at least\"".to_owned(),
+                _ => format!("write `{}`", op.name),
             };
             self.wrong(token.span, message, help);
         }
@@ -248,7 +249,7 @@ impl Parser<'_> {
             if stack.len() >= MAX_NESTING as usize {
                 return self.too_deep(span);
             }
-            if stack.last().is_some_and(|top| top.level() > op.level()) {
+            if stack.last().is_some_and(|top| top.level() > op.level) {
                 let text = self.text.get(span.range()).unwrap_or("");
                 self.report(
                     Diagnostic::error("needs-parentheses", span, format!("`{text}` needs parentheses here"))
@@ -257,12 +258,10 @@ impl Parser<'_> {
                         )),
                 );
             }
-            let bounds = match op {
-                Prefix::Temporal(_) => self.bounds()?,
-                Prefix::Not | Prefix::Neg => None,
-            };
-            if let (Prefix::Temporal(temporal), Some((interval, _))) = (op, &bounds) {
-                self.check_interval_allowed(temporal, interval.span);
+            let temporal = matches!(op.operator, Operator::Unary(_));
+            let bounds = if temporal { self.bounds()? } else { None };
+            if let Some((interval, _)) = bounds.as_ref().filter(|_| !op.interval) {
+                self.misplaced_interval(op.name, interval.span);
             }
             stack.push(Pending::Prefix { op, bounds, span });
         }
@@ -270,12 +269,7 @@ impl Parser<'_> {
     }
 
     #[inline(never)]
-    fn check_interval_allowed(&mut self, op: UnaryOp, span: Span) {
-        let name = match op {
-            UnaryOp::Next => "X",
-            UnaryOp::WeakNext => "N",
-            UnaryOp::Finally | UnaryOp::Globally => return,
-        };
+    fn misplaced_interval(&mut self, name: &str, span: Span) {
         let error = Diagnostic::error("interval-not-allowed", span, format!("`{name}` takes no interval"));
         self.report(
             error.with_help(format!("`{name}` always speaks of the next step; repeat it for later ones")),
@@ -283,28 +277,26 @@ impl Parser<'_> {
     }
 
     #[inline(never)]
-    fn prefix(&mut self) -> Option<(Prefix, Span)> {
+    fn prefix(&mut self) -> Option<(&'static Row, Span)> {
         let token = self.token();
-        if let Some(op) = Prefix::of(token.tok) {
+        if let Some(op) = token.prefix() {
             self.bump();
             return Some((op, token.span));
         }
-        let (op, right) = match token.tok {
+        let op = match token.tok {
             Tok::LBracket if self.peek_at(1) == Tok::RBracket => {
-                let span = self.bump().span.to(self.bump().span);
-                self.wrong(span, "`[]` is not an operator here", "write `G`");
-                return Some((Prefix::Temporal(UnaryOp::Globally), span));
+                self.bump();
+                TABLE.iter().find(|row| row.slips.contains(&"[]"))?
             }
-            Tok::Ident if self.operand_follows() => Prefix::of_word(token.text)?,
-            tok => Prefix::of_slip(tok)?,
+            Tok::Foreign => token.slip(true)?,
+            Tok::Ident if self.operand_follows() => token.slip(true)?,
+            _ => return None,
         };
         self.bump();
-        self.wrong(
-            token.span,
-            format!("`{}` is not an operator here", token.text),
-            format!("write `{right}`"),
-        );
-        Some((op, token.span))
+        let span = self.since(token.span);
+        let text = self.text.get(span.range()).unwrap_or("");
+        self.wrong(span, format!("`{text}` is not an operator here"), format!("write `{}`", op.name));
+        Some((op, span))
     }
 
     /// Whether the word at this place cannot be a name, since an operand follows it.
@@ -312,11 +304,11 @@ impl Parser<'_> {
         match self.peek_at(1) {
             // `within K semantics S` is the one place where a word follows a number's name.
             Tok::Ident => {
-                let next = self.token_at(1).text;
-                next != "semantics" && Infix::of_slip(Tok::Ident, next).is_none()
+                let next = self.token_at(1);
+                next.text != "semantics" && next.infix().or(next.slip(false)).is_none()
             }
-            Tok::Number | Tok::Bang | Tok::True | Tok::False | Tok::Tilde => true,
-            Tok::Next | Tok::WeakNext | Tok::Finally | Tok::Globally => true,
+            Tok::Number | Tok::True | Tok::False | Tok::Op(Operator::Not | Operator::Unary(_)) => true,
+            Tok::Foreign => self.token_at(1).text == "~",
             // `not(p)` may be the use of a definition, `not (x == 1)` may not.
             Tok::LParen => match self.peek_at(2) {
                 Tok::Ident => !matches!(self.peek_at(3), Tok::RParen | Tok::Comma),

@@ -1,6 +1,8 @@
 //! What users of other tools and languages write out of habit, and how it is written here.
 
 use super::{Parse, Parser};
+use crate::ast::{ArithOp, CompareOp};
+use crate::operator::{Operator, TABLE};
 use crate::token::Tok;
 
 const SYSTEM: &str = "a system is written `system S { state x: 0..3; action a; on a { x' = x + 1; } }`";
@@ -11,7 +13,7 @@ const COMMENT: &str = "a comment begins with `//`";
 /// Advice for what stands where a declaration should, and whether what follows is of the same kind and best skipped.
 pub(super) fn instead_of_declaration(tok: Tok, text: &str) -> Option<(&'static str, bool)> {
     Some(match (tok, text) {
-        (Tok::Hash | Tok::Minus | Tok::Percent, _) => (COMMENT, false),
+        (Tok::Hash | Tok::Op(Operator::Minus | Operator::Arith(ArithOp::Mod)), _) => (COMMENT, false),
         (Tok::Exists | Tok::Forall, _) => {
             ("a formula stands in an objective: `objective NAME { exists p. ... }`", true)
         }
@@ -30,7 +32,7 @@ pub(super) fn instead_of_declaration(tok: Tok, text: &str) -> Option<(&'static s
 /// Advice for what stands where an item of a system should.
 pub(super) fn instead_of_item(tok: Tok, text: &str) -> Option<&'static str> {
     Some(match (tok, text) {
-        (Tok::Hash | Tok::Minus | Tok::Percent, _) => COMMENT,
+        (Tok::Hash | Tok::Op(Operator::Minus | Operator::Arith(ArithOp::Mod)), _) => COMMENT,
         (_, "VAR" | "var" | "bool" | "boolean" | "int" | "real" | "variable" | "let") => STATE,
         (_, "ASSIGN" | "TRANS" | "next" | "transition" | "trans" | "when") => STEP,
         (_, "INIT" | "initial") => "initial states are written `init x == 0;`",
@@ -41,12 +43,12 @@ pub(super) fn instead_of_item(tok: Tok, text: &str) -> Option<&'static str> {
 
 /// The sign of this language that looks like a character, if there is one.
 pub(crate) fn looks_like(c: char) -> Option<&'static str> {
+    if let Some(row) = TABLE.iter().find(|row| row.lookalikes.contains(c)) {
+        return Some(row.name);
+    }
     Some(match c {
-        '−' | '–' | '—' | '‐' | '‑' => "-",
-        '∣' | '｜' | '│' => "|",
         '“' | '”' | '„' | '＂' => "\"",
         '‘' | '’' | '′' | '＇' | '´' | '`' => "'",
-        '×' | '·' | '∙' | '⋅' | '＊' => "*",
         '…' | '‥' => "..",
         '；' | '\u{37e}' => ";",
         '：' | '∶' => ":",
@@ -58,13 +60,6 @@ pub(crate) fn looks_like(c: char) -> Option<&'static str> {
         '｛' => "{",
         '｝' => "}",
         '＝' => "=",
-        '＆' => "&",
-        '！' => "!",
-        '＜' | '‹' => "<",
-        '＞' | '›' => ">",
-        '＋' => "+",
-        '⟶' | '⟹' | '⊃' | '➔' => "->",
-        '⟷' | '⟺' | '≡' => "<->",
         '⊤' => "true",
         '⊥' => "false",
         _ => return None,
@@ -90,7 +85,9 @@ impl Parser<'_> {
         let op = self.tokens[self.at - 1].text;
         let help = format!("an interval is written `{op}[0,T]`");
         match self.peek() {
-            Tok::LBrace | Tok::Le | Tok::Lt => self.fail_with("`[` or a formula", Some(help)),
+            Tok::LBrace | Tok::Op(Operator::Compare(CompareOp::Le | CompareOp::Lt)) => {
+                self.fail_with("`[` or a formula", Some(help))
+            }
             _ => Ok(()),
         }
     }

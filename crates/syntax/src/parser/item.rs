@@ -4,9 +4,10 @@ use super::recover::{Block, ITEMS, TOP};
 use super::{Abort, Parse, Parser, habit};
 use crate::ast::{Const, Define, Expr, File, Ident, Item, Objective, ObjectiveBody, Quantifier, Template};
 use crate::diagnostic::Diagnostic;
+use crate::operator::Operator;
 use crate::similar::similar;
 use crate::span::Span;
-use crate::token::{Tok, Token};
+use crate::token::{EQUALS, Tok, Token};
 
 /// What stands between the braces of an objective or template.
 struct Formula {
@@ -92,7 +93,7 @@ impl Parser<'_> {
     /// The sign `=` of a declaration.
     pub(super) fn equals(&mut self) -> Parse<()> {
         let token = self.token();
-        if matches!(token.tok, Tok::EqEq | Tok::ColonEq | Tok::Colon) {
+        if matches!(token.tok, EQUALS | Tok::ColonEq | Tok::Colon) {
             self.bump();
             self.wrong(token.span, format!("`{}` does not define a name", token.text), "write `=`");
             return Ok(());
@@ -302,8 +303,8 @@ impl Parser<'_> {
             return Ok(());
         }
         let goes_on = token.is_word()
-            || matches!(token.tok, Tok::LParen | Tok::Bang | Tok::Exists | Tok::Forall)
-            || matches!(token.tok, Tok::Next | Tok::Finally | Tok::Globally);
+            || matches!(token.tok, Tok::LParen | Tok::Exists | Tok::Forall)
+            || matches!(token.tok, Tok::Op(Operator::Not | Operator::Unary(_)));
         if !goes_on {
             return self.fail_with("`.` after the path variables", Some(help.to_owned()));
         }

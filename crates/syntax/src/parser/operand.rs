@@ -2,10 +2,10 @@
 //! and sets.
 
 use super::expr::{Bounds, Node};
-use super::operator::{Infix, Prefix, level};
 use super::{Abort, Parse, Parser, ident};
 use crate::ast::{Expr, ExprKind, Interval, Set};
 use crate::diagnostic::Diagnostic;
+use crate::operator::{Operator, TABLE, level};
 use crate::span::Span;
 use crate::token::Tok;
 
@@ -136,22 +136,24 @@ impl Parser<'_> {
 
     /// Explains `F_T goal[p]` and `GF goal[p]`, which the lexer reads as names.
     fn check_glued(&mut self, text: &str) -> Parse<()> {
-        let operand = matches!(self.peek(), Tok::Ident | Tok::Bang | Tok::Number)
-            || Prefix::of(self.peek()).is_some_and(|op| op != Prefix::Neg);
         let token = self.token();
-        if !operand
-            || token.first_on_line
-            || self.at_word("semantics")
-            || Infix::of_slip(token.tok, token.text).is_some()
-        {
+        let operand = matches!(token.tok, Tok::Ident | Tok::Number)
+            || token.prefix().is_some_and(|row| row.operator != Operator::Neg);
+        let operator = token.infix().or(token.slip(false)).is_some();
+        if !operand || operator || token.first_on_line || self.at_word("semantics") {
             return Ok(());
         }
         let span = self.tokens[self.at - 1].span;
+        let unary = |c: char| {
+            let is = |name: &str| name.chars().eq([c]);
+            TABLE.iter().any(|row| matches!(row.operator, Operator::Unary(_)) && is(row.name))
+        };
+        let bounded = |op: &str| TABLE.iter().any(|row| row.interval && row.name == op);
         let help = match text.split_once('_') {
-            Some((op @ ("F" | "G" | "U" | "R" | "W"), bound)) if !bound.is_empty() => {
+            Some((op, bound)) if bounded(op) && !bound.is_empty() => {
                 format!("an operator and its bound are written `{op}[0,{bound}]`")
             }
-            None if text.chars().all(|c| "XNFG".contains(c)) => {
+            None if text.chars().all(unary) => {
                 let apart: Vec<String> = text.chars().map(String::from).collect();
                 format!("put blanks between operators: `{}`", apart.join(" "))
             }
@@ -219,11 +221,11 @@ impl Parser<'_> {
             Tok::Exists | Tok::Forall => {
                 "quantifiers stand in front of the whole formula: `exists p. forall q. ...`"
             }
-            Tok::Until | Tok::Release | Tok::WeakUntil => {
-                "this operator stands between two formulas: `a U b`"
-            }
+            Tok::Op(Operator::Binary(_)) => "this operator stands between two formulas: `a U b`",
             Tok::Ident | Tok::Number => return self.fail("an expression"),
-            Tok::Arrow if self.behind().end == token.span.start && self.at > 0 => "write `->`",
+            Tok::Op(Operator::Implies) if self.behind().end == token.span.start && self.at > 0 => {
+                "write `->`"
+            }
             Tok::Assign if self.behind().start == token.span.start => "equality is written `==`",
             _ => return self.fail("an expression"),
         };

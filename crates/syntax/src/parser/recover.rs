@@ -4,7 +4,7 @@ use super::{Abort, Parse, Parser};
 use crate::diagnostic::Diagnostic;
 use crate::similar::similar;
 use crate::span::Span;
-use crate::token::{Tok, Token};
+use crate::token::{EQUALS, Tok, Token};
 
 /// Words that begin a top-level declaration.
 pub(super) const TOP: &[&str] = &["const", "system", "template", "define", "objective"];
@@ -39,7 +39,7 @@ impl Parser<'_> {
                 TOP.contains(&token.text) && self.token_at(1).is_word() || misspelt()
             }
             Block::System => {
-                let begins = matches!(next, Tok::LBracket | Tok::LParen | Tok::Assign | Tok::EqEq);
+                let begins = matches!(next, Tok::LBracket | Tok::LParen | Tok::Assign | EQUALS);
                 let expression = matches!(token.text, "init" | "observe" | "absorb") && next == Tok::LParen;
                 let misspelt = || next == Tok::Ident && self.begins_misspelt(ITEMS);
                 ITEMS.contains(&token.text) && (!begins || expression) || misspelt()

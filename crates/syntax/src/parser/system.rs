@@ -1,14 +1,14 @@
 //! Systems: their maps, variables, actions and clauses.
 
-use super::operator::Infix;
 use super::recover::{Block, ITEMS};
 use super::{Abort, Parse, Parser, did_you_mean, habit};
 use crate::ast::{
-    Clause, Expr, Ident, StateDecl, System, SystemItem, SystemKind, Text, Type, Update, UpdateValue,
+    ArithOp, Clause, Expr, Ident, StateDecl, System, SystemItem, SystemKind, Text, Type, Update, UpdateValue,
 };
 use crate::diagnostic::Diagnostic;
+use crate::operator::Operator;
 use crate::span::Span;
-use crate::token::Tok;
+use crate::token::{EQUALS, Tok};
 
 impl Parser<'_> {
     pub(super) fn system(&mut self) -> Parse<System> {
@@ -185,7 +185,7 @@ impl Parser<'_> {
             _ => None,
         };
         let begins_range = matches!(self.peek_at(1), Tok::DotDot | Tok::LBracket | Tok::LParen)
-            || Infix::of(self.peek_at(1)).is_some();
+            || self.token_at(1).infix().is_some();
         if let Some(known) = known.filter(|_| !begins_range) {
             self.bump();
             return Ok(known);
@@ -226,7 +226,11 @@ impl Parser<'_> {
 
     /// `on A | B when GUARD { UPDATES }`, behind the `on`.
     fn clause(&mut self, start: Span) -> Parse<Clause> {
-        let actions = if self.eat(Tok::Star).is_some() { None } else { Some(self.clause_actions()?) };
+        let actions = if self.eat(Tok::Op(Operator::Arith(ArithOp::Mul))).is_some() {
+            None
+        } else {
+            Some(self.clause_actions()?)
+        };
         let guard = self.guard()?;
         let span = self.since(start);
         let expected = if guard.is_some() { "an operator or `{`" } else { "`|`, `when` or `{`" };
@@ -244,10 +248,10 @@ impl Parser<'_> {
         loop {
             let token = self.token();
             match token.tok {
-                Tok::Pipe => {
+                Tok::Op(Operator::Or) => {
                     self.bump();
                 }
-                Tok::PipePipe | Tok::Comma => {
+                Tok::Foreign | Tok::Comma if matches!(token.text, "||" | ",") => {
                     self.bump();
                     self.wrong(
                         token.span,
@@ -284,7 +288,7 @@ impl Parser<'_> {
         let mut var = self.name("an update such as `x' = x + 1;`")?;
         if let Some(prime) = self.eat(Tok::Prime) {
             var.span = var.span.to(prime.span);
-        } else if matches!(self.peek(), Tok::Assign | Tok::ColonEq | Tok::In) {
+        } else if matches!(self.peek(), Tok::Assign | Tok::ColonEq | Tok::Op(Operator::In)) {
             let message = format!("expected `'` after `{}`", var.name);
             let help = format!("the next value of `{0}` is written `{0}'`", var.name);
             self.report(Diagnostic::error("missing-prime", var.span, message).with_help(help));
@@ -293,7 +297,10 @@ impl Parser<'_> {
                 (Tok::LParen, Tok::Ident) if var.name == "next" => {
                     Some(format!("the next value of `{0}` is written `{0}'`", self.token_at(1).text))
                 }
-                (Tok::Plus | Tok::Minus, Tok::Assign | Tok::Plus | Tok::Minus) => {
+                (
+                    Tok::Op(Operator::Plus | Operator::Minus),
+                    Tok::Assign | Tok::Op(Operator::Plus | Operator::Minus),
+                ) => {
                     let sign = self.token().text;
                     Some(format!("write `{0}' = {0} {sign} 1;`", var.name))
                 }
@@ -307,11 +314,11 @@ impl Parser<'_> {
     }
 
     fn update_value(&mut self) -> Parse<UpdateValue> {
-        if self.eat(Tok::In).is_some() {
+        if self.eat(Tok::Op(Operator::In)).is_some() {
             return Ok(UpdateValue::Choose(self.set()?));
         }
         let token = self.token();
-        if !matches!(token.tok, Tok::Assign | Tok::EqEq | Tok::ColonEq) {
+        if !matches!(token.tok, Tok::Assign | EQUALS | Tok::ColonEq) {
             return self.fail("`=` or `in`");
         }
         self.bump();

@@ -5,8 +5,8 @@ use std::borrow::Cow;
 use super::layout::Indent;
 use super::system::quoted;
 use super::{Printer, start};
-use crate::ast::{ArithOp, BinaryOp, CompareOp, Expr, ExprKind, Ident, Interval, Set, UnaryOp};
-use crate::parser::operator::level;
+use crate::ast::{Expr, ExprKind, Ident, Interval, Set};
+use crate::operator::{Fixity, Operator, level};
 
 /// What is still to be printed. A stack of it stands for recursion, so that nesting costs no call stack.
 enum Task<'a> {
@@ -86,26 +86,11 @@ fn text(text: &'static str) -> Task<'static> {
 
 /// How tightly the outermost operator binds.
 fn level_of(e: &Expr) -> u8 {
-    match &e.kind {
-        ExprKind::Bool(_)
-        | ExprKind::Number(_)
-        | ExprKind::Name(_)
-        | ExprKind::Text(_)
-        | ExprKind::At(..)
-        | ExprKind::Call(..)
-        | ExprKind::Tuple(_) => level::OPERAND,
+    match (&e.kind, Operator::of(&e.kind)) {
+        (_, Some(operator)) => operator.row().level,
         // Its last part reaches as far as it can.
-        ExprKind::If(..) => level::LOWEST,
-        ExprKind::Not(_) | ExprKind::Unary(..) => level::LOGIC_PREFIX,
-        ExprKind::Neg(_) => level::NEG,
-        ExprKind::And(_) => level::AND,
-        ExprKind::Or(_) => level::OR,
-        ExprKind::Implies(..) => level::IMPLIES,
-        ExprKind::Iff(..) => level::IFF,
-        ExprKind::Compare(..) | ExprKind::In(..) => level::COMPARE,
-        ExprKind::Sum(_) => level::SUM,
-        ExprKind::Arith(..) => level::PRODUCT,
-        ExprKind::Binary(..) => level::UNTIL,
+        (ExprKind::If(..), None) => level::LOWEST,
+        (_, None) => level::OPERAND,
     }
 }
 
@@ -129,32 +114,15 @@ fn parts<'a>(e: &'a Expr, out: &mut Tasks<'a>) {
         ExprKind::Text(name) => out.push(Task::Text(quoted(name).into())),
         ExprKind::At(name, paths) => out.push(applied(name, "[", paths, "]")),
         ExprKind::Call(name, args) => out.push(applied(name, "(", args, ")")),
-        ExprKind::Not(a) => out.extend([text("!"), Task::Expr(a, below_not(a))]),
-        ExprKind::Neg(a) => out.extend([text("-"), Task::Expr(a, level::NEG)]),
-        ExprKind::And(items) => chain(items, "& ", level::AND, out),
-        ExprKind::Or(items) => chain(items, "| ", level::OR, out),
+        ExprKind::Not(a) => prefix(Operator::Not, None, a, out),
+        ExprKind::Neg(a) => prefix(Operator::Neg, None, a, out),
+        ExprKind::And(items) => chain(Operator::And, items, out),
+        ExprKind::Or(items) => chain(Operator::Or, items, out),
         ExprKind::Sum(items) => sum(items, out),
-        ExprKind::Implies(a, b) => {
-            out.extend([Task::Expr(a, level::IMPLIES + 1), Task::Soft, text("-> ")]);
-            out.push(if matches!(b.kind, ExprKind::Implies(..)) {
-                Task::Rest(b)
-            } else {
-                Task::Expr(b, level::IMPLIES)
-            });
-        }
-        ExprKind::Iff(a, b) => {
-            let (a, b) = (Task::Expr(a, level::IFF), Task::Expr(b, level::IFF + 1));
-            out.extend([a, Task::Soft, text("<-> "), b]);
-        }
-        ExprKind::Compare(op, a, b) => {
-            // Comparisons cannot be chained.
-            let (a, b) = (Task::Expr(a, level::SUM), Task::Expr(b, level::SUM));
-            out.extend([a, Task::Soft, text(compare(*op)), b]);
-        }
-        ExprKind::Arith(op, a, b) => {
-            let (a, b) = (Task::Expr(a, level::PRODUCT), Task::Expr(b, level::PRODUCT + 1));
-            out.extend([a, Task::Soft, text(arith(*op)), b]);
-        }
+        ExprKind::Implies(a, b) => infix(Operator::Implies, None, a, b, out),
+        ExprKind::Iff(a, b) => infix(Operator::Iff, None, a, b, out),
+        ExprKind::Compare(op, a, b) => infix(Operator::Compare(*op), None, a, b, out),
+        ExprKind::Arith(op, a, b) => infix(Operator::Arith(*op), None, a, b, out),
         ExprKind::In(a, set) => out.extend([Task::Expr(a, level::SUM), text(" in "), Task::Set(set)]),
         ExprKind::Tuple(items) => {
             out.push(text("("));
@@ -162,27 +130,44 @@ fn parts<'a>(e: &'a Expr, out: &mut Tasks<'a>) {
             out.push(text(")"));
         }
         ExprKind::If(c, a, b) => conditional(c, a, b, out),
-        ExprKind::Unary(op, interval, a) => {
-            out.push(text(unary(*op)));
-            out.extend(interval.as_ref().map(Task::Interval));
-            out.extend([text(" "), Task::Expr(a, level::LOGIC_PREFIX)]);
-        }
+        ExprKind::Unary(op, interval, a) => prefix(Operator::Unary(*op), interval.as_ref(), a, out),
         ExprKind::Binary(op, interval, a, b) => {
-            out.extend([Task::Expr(a, level::UNTIL + 1), Task::Soft, text(binary(*op))]);
-            out.extend(interval.as_ref().map(Task::Interval));
-            out.push(text(" "));
-            out.push(if matches!(b.kind, ExprKind::Binary(..)) {
-                Task::Rest(b)
-            } else {
-                Task::Expr(b, level::UNTIL)
-            });
+            infix(Operator::Binary(*op), interval.as_ref(), a, b, out);
         }
     }
 }
 
-/// `!x == 1` is `!(x == 1)`, but hardly anybody reads it so.
-fn below_not(operand: &Expr) -> u8 {
-    if level_of(operand) == level::COMPARE { level::OPERAND } else { level::LOGIC_PREFIX }
+/// An operator and its operand.
+fn prefix<'a>(operator: Operator, interval: Option<&'a Interval>, a: &'a Expr, out: &mut Tasks<'a>) {
+    let row = operator.row();
+    out.push(text(row.name));
+    out.extend(interval.map(Task::Interval));
+    if matches!(operator, Operator::Unary(_)) {
+        out.push(text(" "));
+    }
+    // `!x == 1` is `!(x == 1)`, but hardly anybody reads it so.
+    let misread = operator == Operator::Not && level_of(a) == level::COMPARE;
+    out.push(Task::Expr(a, if misread { level::OPERAND } else { row.level }));
+}
+
+/// An operator between two operands.
+fn infix<'a>(
+    operator: Operator,
+    interval: Option<&'a Interval>,
+    a: &'a Expr,
+    b: &'a Expr,
+    out: &mut Tasks<'a>,
+) {
+    let row = operator.row();
+    let same = if row.fixity == Fixity::Left { row.level } else { row.level + 1 };
+    out.extend([Task::Expr(a, same), Task::Soft, text(row.name)]);
+    out.extend(interval.map(Task::Interval));
+    out.push(text(" "));
+    out.push(match row.fixity {
+        Fixity::Right if level_of(b) == row.level => Task::Rest(b),
+        Fixity::Right => Task::Expr(b, row.level),
+        _ => Task::Expr(b, row.level + 1),
+    });
 }
 
 fn conditional<'a>(c: &'a Expr, a: &'a Expr, b: &'a Expr, out: &mut Tasks<'a>) {
@@ -192,12 +177,13 @@ fn conditional<'a>(c: &'a Expr, a: &'a Expr, b: &'a Expr, out: &mut Tasks<'a>) {
 }
 
 /// Operands with one sign between them.
-fn chain<'a>(items: &'a [Expr], sign: &'static str, level: u8, out: &mut Tasks<'a>) {
+fn chain<'a>(operator: Operator, items: &'a [Expr], out: &mut Tasks<'a>) {
+    let row = operator.row();
     for (nth, item) in items.iter().enumerate() {
         if nth > 0 {
-            out.extend([Task::Soft, text(sign)]);
+            out.extend([Task::Soft, text(row.name), text(" ")]);
         }
-        out.push(Task::Expr(item, level + 1));
+        out.push(Task::Expr(item, row.level + 1));
     }
 }
 
@@ -268,41 +254,4 @@ fn interval_parts<'a>(interval: &'a Interval, out: &mut Tasks<'a>) {
 fn applied(name: &Ident, open: &str, args: &[Ident], close: &str) -> Task<'static> {
     let args: Vec<&str> = args.iter().map(|arg| arg.name.as_str()).collect();
     Task::Text(format!("{}{open}{}{close}", name.name, args.join(", ")).into())
-}
-
-fn compare(op: CompareOp) -> &'static str {
-    match op {
-        CompareOp::Eq => "== ",
-        CompareOp::Ne => "!= ",
-        CompareOp::Lt => "< ",
-        CompareOp::Le => "<= ",
-        CompareOp::Gt => "> ",
-        CompareOp::Ge => ">= ",
-    }
-}
-
-fn arith(op: ArithOp) -> &'static str {
-    match op {
-        ArithOp::Mul => "* ",
-        ArithOp::Divide => "/ ",
-        ArithOp::Div => "div ",
-        ArithOp::Mod => "% ",
-    }
-}
-
-fn unary(op: UnaryOp) -> &'static str {
-    match op {
-        UnaryOp::Next => "X",
-        UnaryOp::WeakNext => "N",
-        UnaryOp::Finally => "F",
-        UnaryOp::Globally => "G",
-    }
-}
-
-fn binary(op: BinaryOp) -> &'static str {
-    match op {
-        BinaryOp::Until => "U",
-        BinaryOp::Release => "R",
-        BinaryOp::WeakUntil => "W",
-    }
 }
