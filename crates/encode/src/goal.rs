@@ -82,7 +82,6 @@ fn conjuncts(formula: &Formula, id: FormulaId, want: bool) -> Vec<(FormulaId, bo
             (Node::And(ids), true) | (Node::Or(ids), false) => {
                 stack.extend(ids.iter().rev().map(|&i| (i, want)))
             }
-            (Node::Implies(a, b), false) => stack.extend([(*b, false), (*a, true)]),
             (Node::Not(a), _) => stack.push((*a, !want)),
             _ => found.push((id, want)),
         }

@@ -1,7 +1,8 @@
 use crate::goal::Goal;
 use crate::unroll::{AtomTerms, Unroller};
-use hyperplan_problem::{Expr, Formula, FormulaId, Interval, Mode, Node, TemporalOp};
+use hyperplan_problem::{Expr, Formula, FormulaId, Interval, Mode, Node};
 use hyperplan_smt::{Sort, Term, Terms};
+use hyperplan_syntax::ast::{BinaryOp, UnaryOp};
 use hyperplan_syntax::{SourceId, Span};
 
 const SPAN: Span = Span { source: SourceId(0), start: 0, end: 0 };
@@ -25,7 +26,7 @@ fn size(build: &dyn Fn(&mut Formula, Interval) -> FormulaId, horizon: u32, mode:
     let mut formula = Formula::default();
     let window = Interval { lo: 0, hi: Some(horizon) };
     let inner = build(&mut formula, window);
-    formula.push(Node::Globally(window, inner), SPAN);
+    formula.unary(UnaryOp::Globally, window, inner, SPAN);
     let mut terms = Terms::new();
     let goal = Goal::new(&formula, true);
     Unroller::new(&formula, mode, Free).goal(&mut terms, &goal);
@@ -35,33 +36,27 @@ fn size(build: &dyn Fn(&mut Formula, Interval) -> FormulaId, horizon: u32, mode:
 #[test]
 fn every_operator_unrolls_to_linearly_many_terms() {
     type Build = Box<dyn Fn(&mut Formula, Interval) -> FormulaId>;
-    let binary = |op: TemporalOp, lo: u32| -> Build {
+    let binary = |op: BinaryOp, lo: u32| -> Build {
         Box::new(move |f, window| {
             let (a, b) = (atom(f), atom(f));
-            f.push(Node::Temporal(op, Interval { lo, ..window }, a, b), SPAN)
+            f.binary(op, Interval { lo, ..window }, a, b, SPAN)
         })
     };
-    let unary = |node: fn(Interval, FormulaId) -> Node| -> Build {
+    let unary = |op: UnaryOp| -> Build {
         Box::new(move |f, window| {
             let a = atom(f);
-            f.push(node(window, a), SPAN)
+            f.unary(op, window, a, SPAN)
         })
     };
     let operators: Vec<(&str, Build)> = vec![
-        ("F", unary(Node::Finally)),
-        ("G", unary(Node::Globally)),
-        (
-            "X",
-            Box::new(|f, _| {
-                let a = atom(f);
-                f.push(Node::Next(a), SPAN)
-            }),
-        ),
-        ("U", binary(TemporalOp::Until, 0)),
-        ("U[7,_]", binary(TemporalOp::Until, 7)),
-        ("R", binary(TemporalOp::Release, 0)),
-        ("R[7,_]", binary(TemporalOp::Release, 7)),
-        ("W", binary(TemporalOp::WeakUntil, 0)),
+        ("F", unary(UnaryOp::Finally)),
+        ("G", unary(UnaryOp::Globally)),
+        ("X", unary(UnaryOp::Next)),
+        ("U", binary(BinaryOp::Until, 0)),
+        ("U[7,_]", binary(BinaryOp::Until, 7)),
+        ("R", binary(BinaryOp::Release, 0)),
+        ("R[7,_]", binary(BinaryOp::Release, 7)),
+        ("W", binary(BinaryOp::WeakUntil, 0)),
     ];
     for (name, build) in &operators {
         for mode in [|_| Mode::Bounded, Mode::Within] {

@@ -4,10 +4,10 @@
 //! window is a suffix of one block and a prefix of the next, so that prefixes and suffixes, each shared by all
 //! windows that need it, are all there is to build. A sliding `F[0,b]` would otherwise cost a factor of `b`.
 //!
-//! `R`, `F` and `G` are `U` through duality: negation of a term costs nothing.
+//! `R` is `U` through duality: negation of a term costs nothing.
 
 use crate::goal::Goal;
-use hyperplan_problem::{Formula, FormulaId, Interval, Mode, Node, TemporalOp};
+use hyperplan_problem::{Formula, FormulaId, Interval, Mode, Node};
 use hyperplan_smt::{Term, Terms};
 use rustc_hash::FxHashMap;
 
@@ -88,10 +88,6 @@ impl<'a, A: AtomTerms> Unroller<'a, A> {
                 let parts: Vec<Term> = ids.iter().map(|&id| self.at(terms, id, time)).collect();
                 if matches!(&formula.nodes[id], Node::And(_)) { terms.and(&parts) } else { terms.or(&parts) }
             }
-            Node::Implies(a, b) => {
-                let (a, b) = (self.at(terms, *a, time), self.at(terms, *b, time));
-                terms.implies(a, b)
-            }
             Node::Iff(a, b) => {
                 let (a, b) = (self.at(terms, *a, time), self.at(terms, *b, time));
                 terms.iff(a, b)
@@ -103,28 +99,29 @@ impl<'a, A: AtomTerms> Unroller<'a, A> {
                     self.at(terms, *a, time + 1)
                 }
             }
-            Node::Finally(interval, a) => self.until(terms, *interval, Operand::True, Operand::Is(*a), time),
-            Node::Globally(interval, a) => {
-                !self.until(terms, *interval, Operand::True, Operand::Not(*a), time)
+            Node::Until(interval, a, b) => {
+                let (left, right) = (self.operand(*a, true), self.operand(*b, true));
+                self.until(terms, *interval, left, right, time)
             }
-            Node::Temporal(op, interval, a, b) => match op {
-                TemporalOp::Until => self.until(terms, *interval, Operand::Is(*a), Operand::Is(*b), time),
-                TemporalOp::Release => {
-                    !self.until(terms, *interval, Operand::Not(*a), Operand::Not(*b), time)
-                }
-                TemporalOp::WeakUntil => {
-                    let until = self.until(terms, *interval, Operand::Is(*a), Operand::Is(*b), time);
-                    let whole = Interval { lo: 0, hi: interval.hi };
-                    let always = !self.until(terms, whole, Operand::True, Operand::Not(*a), time);
-                    terms.or2(until, always)
-                }
-            },
+            Node::Release(interval, a, b) => {
+                let (left, right) = (self.operand(*a, false), self.operand(*b, false));
+                !self.until(terms, *interval, left, right, time)
+            }
         };
         self.memo.insert((id, time), term);
         term
     }
 
-    fn operand(&mut self, terms: &mut Terms, operand: Operand, time: u32) -> Term {
+    /// A subformula or its negation, as an operand.
+    fn operand(&self, id: FormulaId, positive: bool) -> Operand {
+        match (self.formula.constant(id), positive) {
+            (Some(value), _) if value == positive => Operand::True,
+            (_, true) => Operand::Is(id),
+            (_, false) => Operand::Not(id),
+        }
+    }
+
+    fn operand_at(&mut self, terms: &mut Terms, operand: Operand, time: u32) -> Term {
         match operand {
             Operand::True => Term::TRUE,
             Operand::Is(id) => self.at(terms, id, time),
@@ -217,22 +214,22 @@ impl<'a, A: AtomTerms> Unroller<'a, A> {
         let neighbour_value = neighbour.map(|n| self.windows[&(window, n)]);
         let value = match window.part {
             Part::AlwaysToEnd | Part::AlwaysFromStart => {
-                let here = self.operand(terms, window.left, at);
+                let here = self.operand_at(terms, window.left, at);
                 neighbour_value.map_or(here, |n| terms.and2(here, n))
             }
             Part::UntilToEnd => {
-                let here = self.operand(terms, window.right, at);
+                let here = self.operand_at(terms, window.right, at);
                 match neighbour_value {
                     None => here,
                     Some(later) => {
-                        let left = self.operand(terms, window.left, at);
+                        let left = self.operand_at(terms, window.left, at);
                         let wait = terms.and2(left, later);
                         terms.or2(here, wait)
                     }
                 }
             }
             Part::UntilFromStart => {
-                let here = self.operand(terms, window.right, at);
+                let here = self.operand_at(terms, window.right, at);
                 match (neighbour_value, neighbour) {
                     (Some(earlier), Some(before)) => {
                         let stay = Window { part: Part::AlwaysFromStart, ..window };

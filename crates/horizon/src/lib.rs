@@ -3,12 +3,13 @@
 //! The paper's recursion gives a path that does not occur a finite horizon (`x + (-inf) = x`) and charges both
 //! operands of a bounded until with the whole bound. Here a path that does not occur has no horizon, and in
 //! `phi U[a,b] psi` the left operand is read only up to step `b - 1`, since `psi` may come no later than `b`; the
-//! same holds for `R`, its dual. `W` is `U` or `G[0,b] phi`, so it reads `phi` up to `b`.
+//! same holds for `R`, its dual. What other operators read follows from what they mean: `W` is `U` or `G[0,b] phi`, so
+//! it reads `phi` up to `b`.
 //!
 //! Both numbers are computed top-down: the latest time at which each subformula is read. The chain of operators
 //! that leads to the latest read of a path is the reason for its horizon.
 
-use hyperplan_problem::{Expr, FormulaId, Interval, Mode, Node, Objective, PathId, PathLeaf, TemporalOp};
+use hyperplan_problem::{Expr, FormulaId, Interval, Mode, Node, Objective, PathId, PathLeaf};
 use typed_index_collections::TiVec;
 
 /// The horizon of one path variable, in steps.
@@ -99,16 +100,17 @@ fn delays(node: &Node, charge: Charge) -> Vec<(FormulaId, Option<u64>)> {
     let end = |interval: &Interval| u64::from(interval.hi.unwrap_or(0));
     match node {
         Node::Next(a) | Node::WeakNext(a) => vec![(*a, Some(1))],
-        Node::Finally(interval, a) | Node::Globally(interval, a) => vec![(*a, Some(end(interval)))],
-        Node::Temporal(op, interval, lhs, rhs) => {
+        Node::Until(interval, left, right) | Node::Release(interval, left, right) => {
             let end = end(interval);
-            let left = match (charge, op) {
-                (Charge::Paper, _) | (_, TemporalOp::WeakUntil) => Some(end),
-                (Charge::Tight, TemporalOp::Until | TemporalOp::Release) => end.checked_sub(1),
+            let before = match charge {
+                Charge::Paper => Some(end),
+                Charge::Tight => end.checked_sub(1),
             };
-            vec![(*lhs, left), (*rhs, Some(end))]
+            vec![(*left, before), (*right, Some(end))]
         }
-        _ => node.children().into_iter().map(|c| (c, Some(0))).collect(),
+        Node::Atom(_) | Node::Not(_) | Node::And(_) | Node::Or(_) | Node::Iff(..) => {
+            node.children().into_iter().map(|c| (c, Some(0))).collect()
+        }
     }
 }
 

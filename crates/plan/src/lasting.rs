@@ -11,15 +11,15 @@
 //!
 //! | | upwards | downwards |
 //! | --- | --- | --- |
-//! | `F`, `U` | `[a,b]` within `[a',b']` | `[a',b']` within `[a,b]`, not longer |
-//! | `G`, `R` | `[a',b']` within `[a,b]`, not longer | `[a,b]` within `[a',b']` |
-//! | `W` | `a' <= a`, `b' <= b`, not longer | `a <= a'`, `b <= b'` |
+//! | `U` | `[a,b]` within `[a',b']` | `[a',b']` within `[a,b]`, not longer |
+//! | `R` | `[a',b']` within `[a,b]`, not longer | `[a,b]` within `[a',b']` |
+//! | `(f U[a,b] g) \| G[0,b] f` | `a' <= a`, `b' <= b`, not longer | `a <= a'`, `b <= b'` |
 //! | `X` | | not longer |
 //! | `N` | not longer | |
 //!
-//! and the operands last in the same direction; negation, and the left side of an implication, turn the direction, an
-//! equivalence needs both. For `W`, which is `(f U[a,b] g) | G[0,b] f`: a `g` that comes too late for the later
-//! interval still means that `f` holds as long as that interval lasts.
+//! and the operands last in the same direction; negation turns the direction, an equivalence needs both. The
+//! disjunction, which is `f W[a,b] g`, lasts longer than its parts: a `g` that comes too late for the later interval
+//! still means that `f` holds as long as that interval lasts.
 //!
 //! *Without `within`* paths are infinite and do not depend on the constant, so what lasts upwards on all tuples of
 //! paths lasts under any quantifiers. (Systems with `int` or `real` variables are left out: their paths end with the
@@ -36,9 +36,7 @@
 mod tests;
 
 use hyperplan_encode::{Graphs, Limits};
-use hyperplan_problem::{
-    Formula, FormulaId, Interval, Mode, Node, Objective, Problem, Quantifier, TemporalOp,
-};
+use hyperplan_problem::{Formula, FormulaId, Interval, Mode, Node, Objective, Problem, Quantifier};
 use typed_index_collections::TiVec;
 
 /// A problem and one of its objectives.
@@ -71,16 +69,21 @@ pub(crate) fn lasting(
     if !same_paths(earlier, later, longer, graphs) {
         return None;
     }
-    let (from, to) = (&earlier.1.formula, &later.1.formula);
+    let lasts = compare(&earlier.1.formula, &later.1.formula, longer)?;
+    Some(lasts.into_iter().map(|lasts| lasts.up).collect())
+}
+
+/// How each subformula lasts; `None` where the formulas have not the same operators and atoms.
+fn compare(from: &Formula, to: &Formula, longer: bool) -> Option<TiVec<FormulaId, Lasts>> {
     if from.nodes.len() != to.nodes.len() {
         return None;
     }
     let mut lasts: TiVec<FormulaId, Lasts> = TiVec::with_capacity(from.nodes.len());
-    for (a, b) in from.nodes.iter().zip(&to.nodes) {
-        let both = node(a, b, longer, &lasts)?;
+    for id in from.nodes.keys() {
+        let both = node(from, to, id, longer, &lasts)?;
         lasts.push(both);
     }
-    Some(lasts.into_iter().map(|lasts| lasts.up).collect())
+    Some(lasts)
 }
 
 /// Whether later paths are longer; `None` where they are shorter.
@@ -129,9 +132,19 @@ impl Lasts {
 }
 
 /// `None` where the nodes are not of one kind.
-fn node(a: &Node, b: &Node, longer: bool, known: &TiVec<FormulaId, Lasts>) -> Option<Lasts> {
+fn node(
+    from: &Formula,
+    to: &Formula,
+    id: FormulaId,
+    longer: bool,
+    known: &TiVec<FormulaId, Lasts>,
+) -> Option<Lasts> {
+    let (a, b) = (&from.nodes[id], &to.nodes[id]);
     if a.children() != b.children() {
         return None;
+    }
+    if let (Some((i, x, y)), Some((j, ..))) = (as_weak_until(from, a), as_weak_until(to, b)) {
+        return Some(known[x].and(known[y]).and(weak_until(&i, &j, longer)));
     }
     let all = |ids: &[FormulaId]| ids.iter().fold(Lasts::BOTH, |all, &id| all.and(known[id]));
     let own = |up: bool, down: bool| Lasts { up, down };
@@ -139,34 +152,35 @@ fn node(a: &Node, b: &Node, longer: bool, known: &TiVec<FormulaId, Lasts>) -> Op
         (Node::Atom(x), Node::Atom(y)) => return (x == y).then_some(Lasts::BOTH),
         (Node::Not(x), Node::Not(_)) => known[*x].turned(),
         (Node::And(ids), Node::And(_)) | (Node::Or(ids), Node::Or(_)) => all(ids),
-        (Node::Implies(x, y), Node::Implies(..)) => known[*x].turned().and(known[*y]),
         (Node::Iff(x, y), Node::Iff(..)) => {
             let both = all(&[*x, *y]);
             both.and(both.turned())
         }
         (Node::Next(x), Node::Next(_)) => known[*x].and(own(true, !longer)),
         (Node::WeakNext(x), Node::WeakNext(_)) => known[*x].and(own(!longer, true)),
-        (Node::Finally(i, x), Node::Finally(j, _)) => known[*x].and(strong(i, j, longer)),
-        (Node::Globally(i, x), Node::Globally(j, _)) => known[*x].and(weak(i, j, longer)),
-        (Node::Temporal(op, i, x, y), Node::Temporal(other, j, ..)) if op == other => {
-            all(&[*x, *y]).and(match op {
-                TemporalOp::Until => strong(i, j, longer),
-                TemporalOp::Release => weak(i, j, longer),
-                TemporalOp::WeakUntil => weak_until(i, j, longer),
-            })
-        }
+        (Node::Until(i, x, y), Node::Until(j, ..)) => all(&[*x, *y]).and(strong(i, j, longer)),
+        (Node::Release(i, x, y), Node::Release(j, ..)) => all(&[*x, *y]).and(weak(i, j, longer)),
         _ => return None,
     })
 }
 
-/// For `F` and `U`.
+/// The interval and the operands of `(f U[a,b] g) | G[0,b] f`.
+fn as_weak_until(formula: &Formula, node: &Node) -> Option<(Interval, FormulaId, FormulaId)> {
+    let Node::Or(ids) = node else { return None };
+    let &[until, always] = ids.as_slice() else { return None };
+    let Node::Until(interval, f, g) = formula.nodes[until] else { return None };
+    let whole = (Interval { lo: 0, ..interval }, f);
+    (formula.globally(always) == Some(whole)).then_some((interval, f, g))
+}
+
+/// For `U`.
 fn strong(earlier: &Interval, later: &Interval, longer: bool) -> Lasts {
     Lasts { up: inside(earlier, later), down: !longer && inside(later, earlier) }
 }
 
-/// For `G` and `R`.
+/// For `R`, the dual.
 fn weak(earlier: &Interval, later: &Interval, longer: bool) -> Lasts {
-    Lasts { up: !longer && inside(later, earlier), down: inside(earlier, later) }
+    strong(earlier, later, longer).turned()
 }
 
 /// For `W`.

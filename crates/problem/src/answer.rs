@@ -557,7 +557,8 @@ fn hint<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
 mod tests {
     use super::*;
     use crate::expr::Expr;
-    use crate::objective::{Formula, Mode, Node, PathVar, Quantifier};
+    use crate::formula::{Formula, Node};
+    use crate::objective::{Mode, PathVar, Quantifier};
     use crate::system::{Map, Var};
     use hyperplan_syntax::{SourceId, Span};
     use typed_index_collections::ti_vec;

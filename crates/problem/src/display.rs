@@ -1,11 +1,14 @@
 //! Typed things back in the language's syntax, for messages.
 
 use crate::expr::{Comparison, Expr, Leaf, PathLeaf, Rational, State, Type, Value};
+use crate::formula::{Formula, Interval, Node};
 use crate::ids::{FormulaId, PathId};
-use crate::objective::{Interval, Node, Objective, Quantifier, TemporalOp};
+use crate::objective::{Objective, Quantifier};
 use crate::problem::Problem;
 use crate::system::System;
+use hyperplan_syntax::ast::{BinaryOp, UnaryOp};
 use hyperplan_syntax::is_name;
+use hyperplan_syntax::operator::{Fixity, Operator, level};
 use std::borrow::Cow;
 
 /// Longer texts are cut, with `...` at the end: shared parts could make them exponential.
@@ -19,7 +22,7 @@ const MAX_MEMBERS: usize = 12;
 pub fn formula(problem: &Problem, objective: &Objective, id: FormulaId) -> String {
     let names = PathNames { problem, objective };
     let mut printer = Printer { out: String::new(), names: &names };
-    printer.formula(objective, id, 0);
+    printer.formula(&objective.formula, id, level::LOWEST);
     printer.finish()
 }
 
@@ -168,20 +171,6 @@ impl Names<PathLeaf> for PathNames<'_> {
     }
 }
 
-/// Binding strengths, weakest first; an operand of a weaker form gets parentheses.
-mod level {
-    pub(super) const IFF: u8 = 1;
-    pub(super) const IMPLIES: u8 = 2;
-    pub(super) const OR: u8 = 3;
-    pub(super) const AND: u8 = 4;
-    pub(super) const UNTIL: u8 = 5;
-    pub(super) const UNARY: u8 = 6;
-    pub(super) const COMPARE: u8 = 7;
-    pub(super) const SUM: u8 = 8;
-    pub(super) const PRODUCT: u8 = 9;
-    pub(super) const ATOM: u8 = 10;
-}
-
 struct Printer<'a, N> {
     out: String,
     names: &'a N,
@@ -256,31 +245,31 @@ impl<N> Printer<'_, N> {
             Expr::Add(es) => p.sum(es),
             Expr::Mul(-1, a) => {
                 p.out.push('-');
-                p.expr(a, level::ATOM, None);
+                p.expr(a, level::OPERAND, None);
             }
             Expr::Mul(c, a) => {
                 p.out += &format!("{c} * ");
-                p.expr(a, level::ATOM, None);
+                p.expr(a, level::OPERAND, None);
             }
             Expr::Scale(c, a) if *c == -Rational::ONE => {
                 p.out.push('-');
-                p.expr(a, level::ATOM, None);
+                p.expr(a, level::OPERAND, None);
             }
             Expr::Scale(c, a) if c.is_integer() || *c.numer() != 1 => {
                 p.out += &format!("{c} * ");
-                p.expr(a, level::ATOM, None);
+                p.expr(a, level::OPERAND, None);
             }
             Expr::Scale(c, a) => {
-                p.expr(a, level::ATOM, None);
+                p.expr(a, level::OPERAND, None);
                 p.out += &format!(" / {}", c.denom());
             }
             Expr::ToReal(a) => p.expr(a, place, ty),
             Expr::Div(a, c) => {
-                p.expr(a, level::ATOM, None);
+                p.expr(a, level::OPERAND, None);
                 p.out += &format!(" div {c}");
             }
             Expr::Mod(a, c) => {
-                p.expr(a, level::ATOM, None);
+                p.expr(a, level::OPERAND, None);
                 p.out += &format!(" % {c}");
             }
             Expr::If(c, a, b) => {
@@ -324,7 +313,7 @@ impl<N> Printer<'_, N> {
         }
         self.out.push('!');
         // `!` takes a comparison whole; parentheses say so to those who do not know.
-        self.expr(a, level::ATOM, None);
+        self.expr(a, level::OPERAND, None);
     }
 
     fn sum<L>(&mut self, es: &[Expr<L>])
@@ -384,71 +373,67 @@ impl<N> Printer<'_, N> {
 }
 
 impl Printer<'_, PathNames<'_>> {
-    fn formula(&mut self, objective: &Objective, id: FormulaId, place: u8) {
-        let node = &objective.formula.nodes[id];
-        let own = match node {
-            Node::Atom(e) => {
+    fn formula(&mut self, formula: &Formula, id: FormulaId, place: u8) {
+        let none = Interval::ALWAYS;
+        let (operator, interval) = match (formula.written(id), &formula.nodes[id]) {
+            (Some(written), _) => (written.operator, written.interval),
+            (None, Node::Atom(e)) => {
                 if !self.full() {
                     self.expr(e, place, None);
                 }
                 return;
             }
-            Node::Iff(..) => level::IFF,
-            Node::Implies(..) => level::IMPLIES,
-            Node::Or(xs) if xs.len() != 1 => level::OR,
-            Node::And(xs) if xs.len() != 1 => level::AND,
-            Node::Temporal(..) => level::UNTIL,
-            _ => level::UNARY,
-        };
-        self.at_level(own, place, |p| match node {
-            Node::Atom(_) => {}
-            Node::Not(a) => p.not(objective, *a),
-            Node::And(xs) => p.list(xs, " & ", "true", |p, x| p.formula(objective, *x, level::AND + 1)),
-            Node::Or(xs) => p.list(xs, " | ", "false", |p, x| p.formula(objective, *x, level::OR + 1)),
-            Node::Implies(a, b) => p.pair(objective, *a, " -> ", *b, level::IMPLIES),
-            Node::Iff(a, b) => p.pair(objective, *a, " <-> ", *b, level::IFF),
-            Node::Next(a) => p.prefix(objective, "X ", *a),
-            Node::WeakNext(a) => p.prefix(objective, "N ", *a),
-            Node::Finally(i, a) => p.prefix(objective, &format!("F{} ", interval(*i)), *a),
-            Node::Globally(i, a) => p.prefix(objective, &format!("G{} ", interval(*i)), *a),
-            Node::Temporal(op, i, a, b) => {
-                let name = match op {
-                    TemporalOp::Until => "U",
-                    TemporalOp::Release => "R",
-                    TemporalOp::WeakUntil => "W",
-                };
-                p.pair(objective, *a, &format!(" {name}{} ", interval(*i)), *b, level::UNTIL);
+            (None, Node::Not(_)) => (Operator::Not, none),
+            (None, Node::And(_)) => (Operator::And, none),
+            (None, Node::Or(_)) => (Operator::Or, none),
+            (None, Node::Iff(..)) => (Operator::Iff, none),
+            (None, Node::Next(_)) => (Operator::Unary(UnaryOp::Next), none),
+            (None, Node::WeakNext(_)) => (Operator::Unary(UnaryOp::WeakNext), none),
+            (None, Node::Until(i, ..)) if formula.finally(id).is_some() => {
+                (Operator::Unary(UnaryOp::Finally), *i)
             }
-        });
+            (None, Node::Release(i, ..)) if formula.globally(id).is_some() => {
+                (Operator::Unary(UnaryOp::Globally), *i)
+            }
+            (None, Node::Until(i, ..)) => (Operator::Binary(BinaryOp::Until), *i),
+            (None, Node::Release(i, ..)) => (Operator::Binary(BinaryOp::Release), *i),
+        };
+        let (row, operands) = (operator.row(), formula.operands(id));
+        let sign = row.name.to_owned() + &shown(interval);
+        match (row.fixity, operands.as_slice()) {
+            (Fixity::Prefix, _) => self.at_level(row.level, place, |p| match operands.last() {
+                Some(&a) if operator == Operator::Not => p.not(formula, a),
+                Some(&a) => {
+                    p.out += &format!("{sign} ");
+                    p.formula(formula, a, row.level);
+                }
+                None => {}
+            }),
+            // With one operand it is that operand, which may need parentheses.
+            (_, [only]) => self.formula(formula, *only, row.level + 1),
+            _ => self.at_level(row.level, place, |p| {
+                let empty = if operator == Operator::And { "true" } else { "false" };
+                p.list(&operands, &format!(" {sign} "), empty, |p, x| p.formula(formula, *x, row.level + 1));
+            }),
+        }
     }
 
-    fn not(&mut self, objective: &Objective, a: FormulaId) {
-        if let Node::Atom(e) = &objective.formula.nodes[a] {
+    fn not(&mut self, formula: &Formula, a: FormulaId) {
+        if let Node::Atom(e) = &formula.nodes[a] {
             return self.negation(e);
         }
-        self.prefix(objective, "!", a);
-    }
-
-    fn prefix(&mut self, objective: &Objective, sign: &str, a: FormulaId) {
-        self.out += sign;
-        self.formula(objective, a, level::UNARY);
-    }
-
-    fn pair(&mut self, objective: &Objective, a: FormulaId, sign: &str, b: FormulaId, own: u8) {
-        self.formula(objective, a, own + 1);
-        self.out += sign;
-        self.formula(objective, b, own + 1);
+        self.out += Operator::Not.name();
+        self.formula(formula, a, level::LOGIC_PREFIX);
     }
 }
-
 fn expr_level<L>(e: &Expr<L>) -> u8 {
     match e {
         Expr::Const(Value::Int(n)) if *n < 0 => level::SUM,
         Expr::Const(Value::Real(r)) if *r < Rational::ZERO => level::SUM,
         Expr::Const(Value::Real(r)) if !r.is_integer() => level::PRODUCT,
         Expr::ToReal(a) => expr_level(a),
-        Expr::Const(_) | Expr::Leaf(_) => level::ATOM,
-        Expr::Not(_) => level::UNARY,
+        Expr::Const(_) | Expr::Leaf(_) => level::OPERAND,
+        Expr::Not(_) => level::LOGIC_PREFIX,
         Expr::And(_) => level::AND,
         Expr::Or(_) => level::OR,
         Expr::Iff(..) => level::IFF,
@@ -480,7 +465,7 @@ fn enumeration<'a, L>(names: &'a impl Names<L>, e: &Expr<L>) -> Option<&'a Type>
     }
 }
 
-fn interval(interval: Interval) -> String {
+fn shown(interval: Interval) -> String {
     match interval.hi {
         Some(hi) => format!("[{},{hi}]", interval.lo),
         None => String::new(),

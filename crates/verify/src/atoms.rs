@@ -3,7 +3,7 @@
 use crate::horizon::paths_of;
 use crate::report::Error;
 use crate::residual::{AtomId, Bounds, Connective, ResidualId, Residuals};
-use hyperplan_problem::{Expr, Interval, Mode, Node, Objective, PathId, PathLeaf, TemporalOp, Value};
+use hyperplan_problem::{Expr, FormulaId, Interval, Mode, Node, Objective, PathId, PathLeaf, Value};
 use typed_index_collections::TiVec;
 
 /// A Boolean expression without Boolean structure at its root.
@@ -58,13 +58,8 @@ pub(crate) fn translate(
     let mut t = Translation { residuals, atoms: TiVec::new() };
     let mut done: Vec<Pair> = Vec::with_capacity(objective.formula.nodes.len());
     for node in &objective.formula.nodes {
-        let mut operands = Vec::new();
-        for child in node.children() {
-            let pair = done.get(usize::from(child)).copied();
-            operands
-                .push(pair.ok_or(Error::Malformed { what: "a formula node stands before its operands" })?);
-        }
-        done.push(t.node(objective.mode, node, &operands)?);
+        let pair = t.node(objective.mode, node, &done)?;
+        done.push(pair);
     }
     let root =
         done.last().map(|pair| pair.0).ok_or(Error::Malformed { what: "an objective has no formula" })?;
@@ -72,35 +67,26 @@ pub(crate) fn translate(
 }
 
 impl Translation<'_> {
-    fn node(&mut self, mode: Mode, node: &Node, operands: &[Pair]) -> Result<Pair, Error> {
-        let pair = match (node, operands) {
-            (Node::Atom(expr), _) => self.boolean(expr),
-            (Node::Not(_), &[(a, not_a)]) => (not_a, a),
-            (Node::And(_), all) => self.connect(Connective::And, all),
-            (Node::Or(_), all) => self.connect(Connective::Or, all),
-            (Node::Implies(..), &[(a, not_a), b]) => self.connect(Connective::Or, &[(not_a, a), b]),
-            (Node::Iff(..), &[a, b]) => self.iff(a, b),
-            (Node::Next(_), &[a]) => self.next(Connective::Or, a),
-            (Node::WeakNext(_), &[a]) => self.next(Connective::And, a),
-            (Node::Finally(i, _), &[a]) => {
-                self.temporal(Connective::Or, bounds(mode, i)?, (ResidualId::TRUE, ResidualId::FALSE), a)
-            }
-            (Node::Globally(i, _), &[a]) => self.globally(bounds(mode, i)?, a),
-            (Node::Temporal(TemporalOp::Until, i, ..), &[a, b]) => {
-                self.temporal(Connective::Or, bounds(mode, i)?, a, b)
-            }
-            (Node::Temporal(TemporalOp::Release, i, ..), &[a, b]) => {
-                self.temporal(Connective::And, bounds(mode, i)?, a, b)
-            }
-            (Node::Temporal(TemporalOp::WeakUntil, i, ..), &[a, b]) => {
-                let interval = bounds(mode, i)?;
-                let until = self.temporal(Connective::Or, interval, a, b);
-                let always = self.globally(Bounds { lo: 0, hi: interval.hi }, a);
-                self.connect(Connective::Or, &[until, always])
-            }
-            _ => return Err(Error::Malformed { what: "a formula node has the wrong number of operands" }),
+    fn node(&mut self, mode: Mode, node: &Node, done: &[Pair]) -> Result<Pair, Error> {
+        let of = |id: &FormulaId| {
+            let pair = done.get(usize::from(*id)).copied();
+            pair.ok_or(Error::Malformed { what: "a formula node stands before its operands" })
         };
-        Ok(pair)
+        let all = |ids: &[FormulaId]| ids.iter().map(of).collect::<Result<Vec<Pair>, Error>>();
+        Ok(match node {
+            Node::Atom(expr) => self.boolean(expr),
+            Node::Not(a) => {
+                let (a, not_a) = of(a)?;
+                (not_a, a)
+            }
+            Node::And(ids) => self.connect(Connective::And, &all(ids)?),
+            Node::Or(ids) => self.connect(Connective::Or, &all(ids)?),
+            Node::Iff(a, b) => self.iff(of(a)?, of(b)?),
+            Node::Next(a) => self.next(Connective::Or, of(a)?),
+            Node::WeakNext(a) => self.next(Connective::And, of(a)?),
+            Node::Until(i, a, b) => self.temporal(Connective::Or, bounds(mode, i)?, of(a)?, of(b)?),
+            Node::Release(i, a, b) => self.temporal(Connective::And, bounds(mode, i)?, of(a)?, of(b)?),
+        })
     }
 
     fn connect(&mut self, kind: Connective, operands: &[Pair]) -> Pair {
@@ -128,10 +114,6 @@ impl Translation<'_> {
         let positive = self.residuals.temporal(kind, bounds, lhs.0, rhs.0);
         let negative = self.residuals.temporal(kind.dual(), bounds, lhs.1, rhs.1);
         (positive, negative)
-    }
-
-    fn globally(&mut self, bounds: Bounds, a: Pair) -> Pair {
-        self.temporal(Connective::And, bounds, (ResidualId::FALSE, ResidualId::TRUE), a)
     }
 
     /// Takes an expression's Boolean structure apart, so that its atoms depend on as few paths as can be.

@@ -1,6 +1,6 @@
 //! How far the formula can look along a path, by this crate's own account.
 
-use hyperplan_problem::{FormulaId, Interval, Mode, Node, Objective, PathId, PathLeaf, TemporalOp};
+use hyperplan_problem::{FormulaId, Interval, Mode, Node, Objective, PathId, PathLeaf};
 
 /// The last position at which the formula can read `path`; 0 where it never does, K under `within K`.
 pub(crate) fn horizon(objective: &Objective, path: PathId) -> u64 {
@@ -19,16 +19,12 @@ pub(crate) fn horizon(objective: &Objective, path: PathId) -> u64 {
             }
             Node::Not(a) => of(a),
             Node::And(xs) | Node::Or(xs) => xs.iter().filter_map(of).max(),
-            Node::Implies(a, b) | Node::Iff(a, b) => of(a).max(of(b)),
+            Node::Iff(a, b) => of(a).max(of(b)),
             Node::Next(a) | Node::WeakNext(a) => later(a, 1),
-            Node::Finally(i, a) | Node::Globally(i, a) => later(a, bound(i)),
-            Node::Temporal(op, i, a, b) => {
-                // Until and Release read the left operand strictly before the right one.
-                let lhs = match (op, bound(i).checked_sub(1)) {
-                    (TemporalOp::WeakUntil, _) => later(a, bound(i)),
-                    (TemporalOp::Until | TemporalOp::Release, before) => before.and_then(|n| later(a, n)),
-                };
-                lhs.max(later(b, bound(i)))
+            // They read the left operand strictly before the right one.
+            Node::Until(i, a, b) | Node::Release(i, a, b) => {
+                let before = bound(i).checked_sub(1).and_then(|n| later(a, n));
+                before.max(later(b, bound(i)))
             }
         };
         reach.push(here);

@@ -5,9 +5,6 @@
 use super::{FALSE, Residual, Residuals, Shape, TRUE};
 use hyperplan_problem::Interval;
 
-/// Any time.
-const ALWAYS: Interval = Interval { lo: 0, hi: None };
-
 /// Atoms whose values are known from some time on, for ever.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Settling {
@@ -58,7 +55,7 @@ impl Residuals {
             }
             Shape::Until(_, left, right) => {
                 let (left, right) = (self.relax(left, None, settling), self.relax(right, None, settling));
-                self.temporal(true, ALWAYS, left, right)
+                self.temporal(true, Interval::ALWAYS, left, right)
             }
             Shape::Release(interval, left, right) => {
                 let covers = settling.from.zip(time).is_some_and(|(from, time)| {
@@ -69,7 +66,7 @@ impl Residuals {
                     return TRUE;
                 }
                 let (left, right) = (self.relax(left, None, settling), self.only_settling(right, settling));
-                self.temporal(false, ALWAYS, left, right)
+                self.temporal(false, Interval::ALWAYS, left, right)
             }
         }
     }

@@ -9,7 +9,7 @@ mod debt;
 pub(crate) use debt::Settling;
 
 use crate::goal::Goal;
-use hyperplan_problem::{Formula, FormulaId, Interval, Node, TemporalOp};
+use hyperplan_problem::{Formula, FormulaId, Interval, Node};
 use rustc_hash::FxHashMap;
 use typed_index_collections::TiVec;
 
@@ -111,7 +111,6 @@ impl Residuals {
                 let parts = many(ids);
                 self.join(matches!(node, Node::And(_)) == want, parts)
             }
-            Node::Implies(a, b) => self.join(!want, vec![of(a, !want), of(b, want)]),
             Node::Iff(a, b) => {
                 let left = self.join(true, vec![of(a, true), of(b, want)]);
                 let right = self.join(true, vec![of(a, false), of(b, !want)]);
@@ -119,26 +118,8 @@ impl Residuals {
             }
             Node::Next(a) => self.next(want, of(a, want)),
             Node::WeakNext(a) => self.next(!want, of(a, want)),
-            Node::Finally(interval, a) => {
-                self.temporal(want, *interval, [TRUE, FALSE][usize::from(!want)], of(a, want))
-            }
-            Node::Globally(interval, a) => {
-                self.temporal(!want, *interval, [FALSE, TRUE][usize::from(!want)], of(a, want))
-            }
-            Node::Temporal(op, interval, a, b) => {
-                let (left, right) = (of(a, want), of(b, want));
-                match op {
-                    TemporalOp::Until => self.temporal(want, *interval, left, right),
-                    TemporalOp::Release => self.temporal(!want, *interval, left, right),
-                    TemporalOp::WeakUntil => {
-                        let always = Interval { lo: 0, hi: interval.hi };
-                        let until = self.temporal(want, *interval, left, right);
-                        let neutral = if want { FALSE } else { TRUE };
-                        let globally = self.temporal(!want, always, neutral, left);
-                        self.join(!want, vec![until, globally])
-                    }
-                }
-            }
+            Node::Until(interval, a, b) => self.temporal(want, *interval, of(a, want), of(b, want)),
+            Node::Release(interval, a, b) => self.temporal(!want, *interval, of(a, want), of(b, want)),
         }
     }
 

@@ -1,13 +1,11 @@
 //! What is said to last, on random formulas and words.
 
-use super::{Lasts, node};
-use hyperplan_problem::{
-    Expr, Formula, FormulaId, Interval, LabelId, Leaf, Node, PathId, PathLeaf, TemporalOp,
-};
+use super::compare;
+use hyperplan_problem::{Expr, Formula, FormulaId, Interval, LabelId, Leaf, Node, PathId, PathLeaf};
 use hyperplan_random::{Random, property};
+use hyperplan_syntax::ast::{BinaryOp, UnaryOp};
 use hyperplan_syntax::{SourceId, Span};
 use std::cell::Cell;
-use typed_index_collections::TiVec;
 
 fn interval(random: &mut Random) -> Interval {
     let lo = random.bound(3);
@@ -25,37 +23,37 @@ fn word(random: &mut Random, length: usize) -> Word {
 fn pair(random: &mut Random) -> [Formula; 2] {
     let mut both = [Formula::default(), Formula::default()];
     let span = Span::new(SourceId(0), 0..0);
-    let mut add = |a: Node, b: Node| {
-        both[0].push(a, span);
-        both[1].push(b, span);
-    };
+    let mut operands = Vec::new();
     for label in [0, 1] {
         let leaf = Expr::Leaf(PathLeaf::State(PathId(0), Leaf::Label(LabelId(label))));
-        add(Node::Atom(leaf.clone()), Node::Atom(leaf));
+        for formula in &mut both {
+            formula.push(Node::Atom(leaf.clone()), span);
+        }
+        operands.push(FormulaId::from(label as usize));
     }
-    for size in 2..5 {
-        let mut operand = || FormulaId::from(random.below(size));
+    for _ in 0..3 {
+        let mut operand = || operands[random.below(operands.len())];
         let (x, y) = (operand(), operand());
         let same = random.below(3) == 0;
         let i = interval(random);
         let j = if same { i } else { interval(random) };
-        let temporal = |op| (Node::Temporal(op, i, x, y), Node::Temporal(op, j, x, y));
-        let twice = |node: Node| (node.clone(), node);
-        let (a, b) = match random.below(12) {
-            0 => twice(Node::Not(x)),
-            1 => twice(Node::And(vec![x, y])),
-            2 => twice(Node::Or(vec![x, y])),
-            3 => twice(Node::Implies(x, y)),
-            4 => twice(Node::Iff(x, y)),
-            5 => twice(Node::Next(x)),
-            6 => twice(Node::WeakNext(x)),
-            7 => (Node::Finally(i, x), Node::Finally(j, x)),
-            8 => (Node::Globally(i, x), Node::Globally(j, x)),
-            9 => temporal(TemporalOp::Until),
-            10 => temporal(TemporalOp::Release),
-            _ => temporal(TemporalOp::WeakUntil),
-        };
-        add(a, b);
+        let kind = random.below(13);
+        let [formula, other] = &mut both;
+        let [id, _] = [(formula, i), (other, j)].map(|(formula, i)| match kind {
+            0 => formula.push(Node::Not(x), span),
+            1 => formula.push(Node::And(vec![x, y]), span),
+            2 => formula.push(Node::Or(vec![x, y]), span),
+            3 => formula.implies(x, y, span),
+            4 => formula.push(Node::Iff(x, y), span),
+            5 => formula.unary(UnaryOp::Next, i, x, span),
+            6 => formula.unary(UnaryOp::WeakNext, i, x, span),
+            7 => formula.unary(UnaryOp::Finally, i, x, span),
+            8 => formula.unary(UnaryOp::Globally, i, x, span),
+            9 => formula.binary(BinaryOp::Until, i, x, y, span),
+            10 => formula.binary(BinaryOp::Release, i, x, y, span),
+            _ => formula.binary(BinaryOp::WeakUntil, i, x, y, span),
+        });
+        operands.push(id);
     }
     both
 }
@@ -73,18 +71,11 @@ fn holds(formula: &Formula, id: FormulaId, word: &[[bool; 2]], at: usize) -> boo
         Node::Not(a) => !sub(a, at),
         Node::And(ids) => ids.iter().all(|id| sub(id, at)),
         Node::Or(ids) => ids.iter().any(|id| sub(id, at)),
-        Node::Implies(a, b) => !sub(a, at) || sub(b, at),
         Node::Iff(a, b) => sub(a, at) == sub(b, at),
         Node::Next(a) => at + 1 < word.len() && sub(a, at + 1),
         Node::WeakNext(a) => at + 1 >= word.len() || sub(a, at + 1),
-        Node::Finally(i, a) => until(i, &|_| true, &|t| sub(a, t)),
-        Node::Globally(i, a) => !until(i, &|_| true, &|t| !sub(a, t)),
-        Node::Temporal(TemporalOp::Until, i, a, b) => until(i, &|t| sub(a, t), &|t| sub(b, t)),
-        Node::Temporal(TemporalOp::Release, i, a, b) => !until(i, &|t| !sub(a, t), &|t| !sub(b, t)),
-        Node::Temporal(TemporalOp::WeakUntil, i, a, b) => {
-            let from_now = Interval { lo: 0, hi: i.hi };
-            until(i, &|t| sub(a, t), &|t| sub(b, t)) || !until(&from_now, &|_| true, &|t| !sub(a, t))
-        }
+        Node::Until(i, a, b) => until(i, &|t| sub(a, t), &|t| sub(b, t)),
+        Node::Release(i, a, b) => !until(i, &|t| !sub(a, t), &|t| !sub(b, t)),
     }
 }
 
@@ -97,10 +88,7 @@ fn what_is_said_to_last_does() {
         let longer = random.flip();
         let (cut, whole) = if longer { (1 + random.below(4), 8) } else { (24, 24) };
         let word = word(random, whole);
-        let mut lasts: TiVec<FormulaId, Lasts> = TiVec::new();
-        for (a, b) in earlier.nodes.iter().zip(&later.nodes) {
-            lasts.push(node(a, b, longer, &lasts).expect("nodes of one kind"));
-        }
+        let lasts = compare(&earlier, &later, longer).expect("nodes of one kind");
         for (id, lasts) in lasts.iter_enumerated() {
             for at in 0..cut.min(6) {
                 let (before, after) = (holds(&earlier, id, &word[..cut], at), holds(&later, id, &word, at));

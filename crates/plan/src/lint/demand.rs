@@ -2,7 +2,7 @@
 
 use super::question::Asker;
 use super::rewrite::{Builder, conjuncts, leaves};
-use hyperplan_problem::{Formula, FormulaId, Node, PathId, Quantifier};
+use hyperplan_problem::{Formula, FormulaId, PathId, Quantifier};
 use hyperplan_syntax::{Diagnostic, Span};
 
 /// Looks at the conjuncts that read only `forall` paths. One that some path refutes makes the objective fail,
@@ -18,7 +18,7 @@ pub(super) fn lint(asker: &mut Asker<'_>, found: &mut Vec<Diagnostic>) {
         if asker.is_over(formula.spans[part]) {
             return;
         }
-        if matches!(formula.nodes[part], Node::Implies(..)) {
+        if formula.implication(part).is_some() {
             continue;
         }
         let paths = paths(formula, part);

@@ -1,7 +1,7 @@
 //! Horizons that are much longer than any bound in the objective says.
 
 use hyperplan_horizon::{Horizon, horizons};
-use hyperplan_problem::{Interval, Mode, Node, Objective};
+use hyperplan_problem::{Mode, Node, Objective};
 use hyperplan_syntax::Diagnostic;
 
 /// Shorter paths are no burden.
@@ -37,11 +37,6 @@ fn explain(objective: &Objective, horizon: &Horizon, message: String) -> Diagnos
 
 /// The last step that an operator's bound allows.
 fn end(node: &Node) -> Option<u64> {
-    let (Node::Finally(Interval { hi, .. }, _)
-    | Node::Globally(Interval { hi, .. }, _)
-    | Node::Temporal(_, Interval { hi, .. }, ..)) = node
-    else {
-        return None;
-    };
-    hi.map(u64::from)
+    let (Node::Until(interval, ..) | Node::Release(interval, ..)) = node else { return None };
+    interval.hi.map(u64::from)
 }

@@ -1,6 +1,6 @@
 //! Formulas with parts replaced by truth values.
 
-use hyperplan_problem::{Expr, Formula, FormulaId, Node, PathLeaf};
+use hyperplan_problem::{Formula, FormulaId, Node, PathLeaf};
 use std::collections::{BTreeMap, BTreeSet};
 use typed_index_collections::TiVec;
 
@@ -54,34 +54,28 @@ impl<'f> Builder<'f> {
             Node::And(ids) => return self.join(true, ids.iter().map(|&i| built[i]).collect(), id),
             Node::Or(ids) => return self.join(false, ids.iter().map(|&i| built[i]).collect(), id),
             Node::Not(a) => return self.not(built[*a], id),
-            Node::Implies(a, b) => {
-                let unless = self.not(built[*a], id);
-                return match (built[*a], built[*b]) {
-                    (Built::Node(a), Built::Node(b)) => self.push(Node::Implies(a, b), id),
-                    _ => self.join(false, vec![unless, built[*b]], id),
-                };
-            }
-            Node::Globally(_, a) | Node::WeakNext(a) if built[*a] == Built::Constant(true) => {
+            Node::WeakNext(a) | Node::Release(_, _, a) if built[*a] == Built::Constant(true) => {
                 return Built::Constant(true);
             }
-            Node::Finally(_, a) | Node::Next(a) if built[*a] == Built::Constant(false) => {
+            Node::Next(a) | Node::Until(_, _, a) if built[*a] == Built::Constant(false) => {
                 return Built::Constant(false);
             }
-            other => other.clone(),
+            node @ (Node::Atom(_)
+            | Node::Iff(..)
+            | Node::Next(_)
+            | Node::WeakNext(_)
+            | Node::Until(..)
+            | Node::Release(..)) => node.clone(),
         };
-        let mut child = |at: FormulaId| match built[at] {
-            Built::Node(node) => node,
-            Built::Constant(value) => self.constant(value, at),
-        };
-        let node = match node {
-            Node::Iff(a, b) => Node::Iff(child(a), child(b)),
-            Node::Next(a) => Node::Next(child(a)),
-            Node::WeakNext(a) => Node::WeakNext(child(a)),
-            Node::Finally(interval, a) => Node::Finally(interval, child(a)),
-            Node::Globally(interval, a) => Node::Globally(interval, child(a)),
-            Node::Temporal(op, interval, a, b) => Node::Temporal(op, interval, child(a), child(b)),
-            same => same,
-        };
+        let children: BTreeMap<FormulaId, FormulaId> = node
+            .children()
+            .into_iter()
+            .map(|at| match built[at] {
+                Built::Node(node) => (at, node),
+                Built::Constant(value) => (at, self.constant(value, at)),
+            })
+            .collect();
+        let node = node.map_children(|child| children[&child]);
         self.push(node, id)
     }
 
@@ -127,7 +121,7 @@ impl<'f> Builder<'f> {
 
     fn constant(&mut self, value: bool, at: FormulaId) -> FormulaId {
         let span = self.from.spans[at];
-        self.formula.push(Node::Atom(if value { Expr::TRUE } else { Expr::FALSE }), span)
+        self.formula.push(if value { Node::And(Vec::new()) } else { Node::Or(Vec::new()) }, span)
     }
 
     fn push(&mut self, node: Node, at: FormulaId) -> Built {

@@ -1,7 +1,8 @@
 //! Atoms about the action just taken, where time 0 decides them: no action has been taken there.
 
-use hyperplan_problem::{Expr, Formula, FormulaId, Mode, Node, Objective, PathLeaf, Problem};
+use hyperplan_problem::{Expr, Formula, FormulaId, Mode, Node, Objective, PathLeaf, Problem, Written};
 use hyperplan_syntax::Diagnostic;
+use hyperplan_syntax::operator::Operator;
 use typed_index_collections::TiVec;
 
 /// Looks at what is read at time 0 for sure: the operators that begin there, and atoms outside all of them.
@@ -21,7 +22,7 @@ pub(super) fn lint(problem: &Problem, objective: &Objective) -> Vec<Diagnostic> 
             continue;
         }
         match &formula.nodes[id] {
-            Node::Globally(interval, a) if interval.lo == 0 => {
+            Node::Release(interval, _, a) if interval.lo == 0 && formula.globally(id).is_some() => {
                 if start[*a] == Some(false) {
                     found.push(never(formula, id, culprit(formula, *a, &start)));
                 } else if interval.hi != Some(0) && objective.mode != Mode::Within(0) {
@@ -31,16 +32,14 @@ pub(super) fn lint(problem: &Problem, objective: &Objective) -> Vec<Diagnostic> 
                     }
                 }
             }
-            Node::Finally(interval, a) if interval.lo == 0 && start[*a] == Some(true) => {
+            Node::Until(_, _, a) if start[id] == Some(true) && formula.finally(id).is_some() => {
                 found.push(always(formula, id));
             }
             node if start[id].is_some() && is_read_as_one(formula, id, node) => {
                 found.extend(start[id].map(|value| fixed(formula, id, value)));
             }
-            Node::Not(_) | Node::And(_) | Node::Or(_) | Node::Implies(..) | Node::Iff(..) => {
-                stack.extend(formula.nodes[id].children().into_iter().rev());
-            }
-            _ => {}
+            _ if is_temporal(formula, id) => {}
+            _ => stack.extend(formula.operands(id).into_iter().rev()),
         }
     }
     found
@@ -51,7 +50,19 @@ fn is_read_as_one(formula: &Formula, id: FormulaId, node: &Node) -> bool {
     let here = formula.spans[id];
     match node {
         Node::Atom(_) | Node::Not(_) => true,
-        node => node.children().iter().any(|&child| formula.spans[child] == here),
+        _ => formula.operands(id).iter().any(|&operand| formula.spans[operand] == here),
+    }
+}
+
+/// Whether a node is what a temporal operator was lowered to.
+fn is_temporal(formula: &Formula, id: FormulaId) -> bool {
+    match &formula.nodes[id] {
+        Node::Next(_) | Node::WeakNext(_) | Node::Until(..) | Node::Release(..) => true,
+        Node::Atom(_) | Node::Not(_) | Node::And(_) | Node::Or(_) | Node::Iff(..) => {
+            let temporal =
+                |written: &Written| matches!(written.operator, Operator::Unary(_) | Operator::Binary(_));
+            formula.written(id).is_some_and(temporal)
+        }
     }
 }
 
@@ -129,17 +140,16 @@ fn culprit(formula: &Formula, id: FormulaId, truths: &Truths) -> FormulaId {
 /// Each subformula's value now, as far as some leaves decide it.
 fn truths(formula: &Formula, leaf: &impl Fn(&PathLeaf) -> Option<bool>) -> Truths {
     let mut all: Truths = TiVec::with_capacity(formula.nodes.len());
-    for node in &formula.nodes {
+    for (id, node) in formula.nodes.iter_enumerated() {
         let value = match node {
             Node::Atom(e) => value(e, leaf),
             Node::Not(a) => not(all[*a]),
             Node::And(ids) => and(ids.iter().map(|&i| all[i])),
             Node::Or(ids) => not(and(ids.iter().map(|&i| not(all[i])))),
-            Node::Implies(a, b) => not(and([all[*a], not(all[*b])].into_iter())),
             Node::Iff(a, b) => all[*a].zip(all[*b]).map(|(a, b)| a == b),
-            Node::Globally(interval, a) if interval.lo == 0 => all[*a].filter(|v| !v),
-            Node::Finally(interval, a) if interval.lo == 0 => all[*a].filter(|v| *v),
-            _ => None,
+            Node::Until(i, _, a) if i.lo == 0 && formula.finally(id).is_some() => all[*a].filter(|v| *v),
+            Node::Release(i, _, a) if i.lo == 0 && formula.globally(id).is_some() => all[*a].filter(|v| !v),
+            Node::Until(..) | Node::Release(..) | Node::Next(_) | Node::WeakNext(_) => None,
         };
         all.push(value);
     }

@@ -10,9 +10,10 @@ use super::total::{JUST_STUCK, enabled, is, total};
 use hyperplan_encode::Graph;
 use hyperplan_problem::{
     Comparison, Expr, Formula, FormulaId, Interval, Leaf, Mode, Node, Objective, PathId, PathLeaf, Problem,
-    Quantifier, State, System, TemporalOp, Type, Value, VarId, display,
+    Quantifier, State, System, Type, Value, VarId, display,
 };
 use hyperplan_syntax::Diagnostic;
+use hyperplan_syntax::ast::UnaryOp;
 use std::collections::BTreeSet;
 
 /// Systems with more states are not enumerated to see that nobody can get stuck.
@@ -69,15 +70,13 @@ fn ties(objective: &Objective) -> Vec<Tie> {
                 }
             }
             Node::Not(a) => stack.push((*a, !want, always)),
-            Node::Implies(a, b) => stack.extend([(*b, want, always), (*a, !want, always)]),
-            Node::Globally(_, a) => stack.push((*a, want, always || want)),
-            Node::Finally(_, a) => stack.push((*a, want, always || !want)),
-            Node::Temporal(op, _, a, b) => {
-                let release = *op == TemporalOp::Release;
-                stack.extend([(*b, want, always || release == want), (*a, want, always || release != want)]);
-            }
+            Node::Until(_, a, b) => stack.extend([(*b, want, always || !want), (*a, want, always || want)]),
+            Node::Release(_, a, b) => stack.extend([(*b, want, always || want), (*a, want, always || !want)]),
+            Node::And(ids) => stack.extend(ids.iter().map(|&i| (i, want, always))),
+            // Of an implication the antecedent first.
+            Node::Or(ids) => stack.extend(ids.iter().rev().map(|&i| (i, want, always))),
+            Node::Next(a) | Node::WeakNext(a) => stack.push((*a, want, always)),
             Node::Iff(..) | Node::Atom(_) => {}
-            node => stack.extend(node.children().into_iter().map(|c| (c, want, always))),
         }
     }
     found
@@ -138,7 +137,7 @@ fn question(problem: &Problem, objective: &Objective, tie: &Tie, stuck: VarId) -
         }
         _ => None,
     };
-    parts.push(formula.push(Node::Finally(Interval { lo: 0, hi }, here), span));
+    parts.push(formula.unary(UnaryOp::Finally, Interval { lo: 0, hi }, here, span));
     formula.push(Node::And(parts), span);
     let follower =
         Follower { path: tie.follower, system: &problem.systems[objective.paths[tie.follower].system] };
@@ -169,24 +168,21 @@ fn assumptions(objective: &Objective, tie: &Tie) -> Vec<FormulaId> {
         let mut at = part;
         loop {
             at = match &formula.nodes[at] {
-                Node::Implies(a, b) => {
-                    parts.push(*a);
-                    if above[*a] {
-                        break;
-                    }
-                    *b
-                }
                 Node::And(ids) => match ids.iter().find(|&&i| above[i]) {
                     Some(&next) => next,
                     None => break,
                 },
                 Node::Or(ids) => {
                     let assumed = ids.iter().filter_map(|&i| match &formula.nodes[i] {
-                        Node::Not(a) if above[i] => Some(*a),
+                        Node::Not(a) => Some((*a, above[i])),
                         _ => None,
                     });
-                    parts.extend(assumed);
-                    break;
+                    parts.extend(assumed.clone().map(|(a, _)| a));
+                    let tied = assumed.into_iter().any(|(_, above)| above);
+                    match ids.iter().find(|&&i| above[i]).filter(|_| !tied) {
+                        Some(&next) => next,
+                        None => break,
+                    }
                 }
                 _ => break,
             };

@@ -17,7 +17,9 @@
 
 use super::question::Asker;
 use super::rewrite::{Builder, Replaced, above, conjuncts};
-use hyperplan_problem::{Formula, FormulaId, Node, Quantifier, TemporalOp};
+use hyperplan_problem::{Formula, FormulaId, Node, Quantifier};
+use hyperplan_syntax::ast::BinaryOp;
+use hyperplan_syntax::operator::Operator;
 use hyperplan_syntax::{Diagnostic, Span};
 use typed_index_collections::TiVec;
 
@@ -64,13 +66,18 @@ fn polarities(formula: &Formula) -> TiVec<FormulaId, Polarity> {
         let opposite = Polarity { positive: own.negative, negative: own.positive };
         let both =
             Polarity { positive: own.positive || own.negative, negative: own.positive || own.negative };
-        for (nth, child) in node.children().into_iter().enumerate() {
-            let passed = match node {
-                Node::Not(_) => opposite,
-                Node::Implies(..) if nth == 0 => opposite,
-                Node::Iff(..) => both,
-                _ => own,
-            };
+        let passed = match node {
+            Node::Not(_) => opposite,
+            Node::Iff(..) => both,
+            Node::Atom(_)
+            | Node::And(_)
+            | Node::Or(_)
+            | Node::Next(_)
+            | Node::WeakNext(_)
+            | Node::Until(..)
+            | Node::Release(..) => own,
+        };
+        for child in node.children() {
             all[child].positive |= passed.positive;
             all[child].negative |= passed.negative;
         }
@@ -81,10 +88,10 @@ fn polarities(formula: &Formula) -> TiVec<FormulaId, Polarity> {
 fn nested(formula: &Formula) -> TiVec<FormulaId, bool> {
     let mut all: TiVec<FormulaId, bool> = formula.nodes.iter().map(|_| false).collect();
     for (id, node) in formula.nodes.iter_enumerated().rev() {
-        let temporal = !matches!(
-            node,
-            Node::Atom(_) | Node::Not(_) | Node::And(_) | Node::Or(_) | Node::Implies(..) | Node::Iff(..)
-        );
+        let temporal = match node {
+            Node::Next(_) | Node::WeakNext(_) | Node::Until(..) | Node::Release(..) => true,
+            Node::Atom(_) | Node::Not(_) | Node::And(_) | Node::Or(_) | Node::Iff(..) => false,
+        };
         for child in node.children() {
             all[child] |= temporal || all[id];
         }
@@ -175,32 +182,41 @@ impl Search<'_> {
             return;
         }
         self.visited[id] = true;
-        let positive = self.polarity[id].positive;
-        let node = &self.formula.nodes[id];
-        let mut roles: Vec<(FormulaId, Option<Role>)> = Vec::new();
-        match node {
-            Node::Iff(..) | Node::Atom(_) => return,
-            Node::And(ids) => roles.extend(ids.iter().map(|&i| (i, positive.then_some(Role::Demand)))),
-            Node::Or(ids) => {
-                // `!a | b` is an implication.
-                let assumed = |i: FormulaId| matches!(self.formula.nodes[i], Node::Not(_));
-                roles.extend(ids.iter().map(|&i| (i, (!assumed(i)).then_some(Role::Alternative))));
-            }
-            Node::Implies(a, b) => roles.extend([(*a, None), (*b, Some(Role::Consequent))]),
-            Node::Temporal(op, _, a, b) => roles.extend(match op {
-                TemporalOp::Until => [(*a, None), (*b, None)],
-                TemporalOp::Release => [(*a, Some(Role::Alternative)), (*b, None)],
-                TemporalOp::WeakUntil => [(*a, None), (*b, Some(Role::Alternative))],
-            }),
-            Node::Not(_) | Node::Next(_) | Node::WeakNext(_) | Node::Finally(..) | Node::Globally(..) => {
-                roles.extend(node.children().into_iter().map(|c| (c, None)));
-            }
-        }
+        let roles = self.roles(id);
         for (child, role) in roles {
             tasks.push(Task::Visit(child));
             // What one place in the text stands for as a whole is not taken apart.
             if let Some(role) = role.filter(|_| self.formula.spans[child] != self.formula.spans[id]) {
                 tasks.push(Task::Try(child, role));
+            }
+        }
+    }
+
+    /// The operands as written, and why a replacement of each is tried, if it is.
+    fn roles(&self, id: FormulaId) -> Vec<(FormulaId, Option<Role>)> {
+        let operands = self.formula.operands(id).into_iter();
+        if let Some(written) = self.formula.written(id) {
+            let of_second = match written.operator {
+                Operator::Implies => Some(Role::Consequent),
+                Operator::Binary(BinaryOp::WeakUntil) => Some(Role::Alternative),
+                _ => None,
+            };
+            return operands.zip([None, of_second]).collect();
+        }
+        match &self.formula.nodes[id] {
+            Node::Iff(..) | Node::Atom(_) => Vec::new(),
+            Node::And(_) => {
+                let demand = self.polarity[id].positive.then_some(Role::Demand);
+                operands.map(|i| (i, demand)).collect()
+            }
+            Node::Or(_) => {
+                // `!a | b` is an implication.
+                let assumed = |i: FormulaId| matches!(self.formula.nodes[i], Node::Not(_));
+                operands.map(|i| (i, (!assumed(i)).then_some(Role::Alternative))).collect()
+            }
+            Node::Release(..) => operands.zip([Some(Role::Alternative), None]).collect(),
+            Node::Not(_) | Node::Next(_) | Node::WeakNext(_) | Node::Until(..) => {
+                operands.map(|i| (i, None)).collect()
             }
         }
     }
@@ -296,19 +312,21 @@ impl Search<'_> {
     fn implication(&self, id: FormulaId) -> Option<(FormulaId, FormulaId)> {
         let mut at = id;
         loop {
-            match &self.formula.nodes[at] {
-                Node::Implies(a, b) => return Some((*a, *b)),
-                Node::Globally(_, a) | Node::Next(a) | Node::WeakNext(a) => at = *a,
-                _ => return None,
+            if let Some(sides) = self.formula.implication(at) {
+                return Some(sides);
             }
+            at = match self.formula.nodes[at] {
+                Node::Next(a) | Node::WeakNext(a) => a,
+                _ => self.formula.globally(at)?.1,
+            };
         }
     }
 
     /// The implication that has this consequent, and its antecedent.
     fn implication_of(&self, consequent: FormulaId) -> Option<(FormulaId, FormulaId)> {
-        self.formula.nodes.iter_enumerated().find_map(|(id, node)| match node {
-            Node::Implies(a, b) if *b == consequent => Some((id, *a)),
-            _ => None,
+        self.formula.nodes.keys().find_map(|id| {
+            let (a, b) = self.formula.implication(id)?;
+            (b == consequent).then_some((id, a))
         })
     }
 }

@@ -6,9 +6,11 @@ use super::paths::PathContext;
 use super::typed::Typed;
 use super::walk::visit;
 use crate::expr::{Expr, PathLeaf};
+use crate::formula::{Interval, Node};
 use crate::ids::FormulaId;
-use crate::objective::{Interval, Mode, Node, TemporalOp};
-use hyperplan_syntax::ast::{self, BinaryOp, CompareOp, ExprKind, UnaryOp};
+use crate::objective::Mode;
+use hyperplan_syntax::ast::{self, CompareOp, ExprKind};
+use hyperplan_syntax::operator::Operator;
 use hyperplan_syntax::{Diagnostic, Span};
 
 /// How many definitions are looked through to see whether an operand is a formula.
@@ -32,7 +34,7 @@ impl<'a> PathContext<'a> {
             ExprKind::Or(es) => Node::Or(self.formulas(es)?),
             ExprKind::Implies(a, b) => {
                 let (a, b) = self.pair(a, b)?;
-                Node::Implies(a, b)
+                return Some(self.formula.implies(a, b, e.span));
             }
             ExprKind::Iff(a, b) => {
                 let (a, b) = self.pair(a, b)?;
@@ -52,11 +54,15 @@ impl<'a> PathContext<'a> {
             ExprKind::Call(name, args) => {
                 return self.expand(name, args, e.span, |cx, body| cx.formula(body));
             }
-            ExprKind::Unary(op, interval, a) => self.unary(*op, interval.as_ref(), a, e.span)?,
+            ExprKind::Unary(op, interval, a) => {
+                let interval = self.interval(interval.as_ref(), Operator::Unary(*op), e.span);
+                let a = self.formula(a)?;
+                return Some(self.formula.unary(*op, interval?, a, e.span));
+            }
             ExprKind::Binary(op, interval, a, b) => {
-                let interval = self.interval(interval.as_ref(), symbol(*op), e.span);
+                let interval = self.interval(interval.as_ref(), Operator::Binary(*op), e.span);
                 let (a, b) = self.pair(a, b)?;
-                Node::Temporal(temporal(*op), interval?, a, b)
+                return Some(self.formula.binary(*op, interval?, a, b, e.span));
             }
             _ => {
                 let atom = self.atom(e)?;
@@ -152,37 +158,22 @@ impl<'a> PathContext<'a> {
         false
     }
 
-    fn unary(
-        &mut self,
-        op: UnaryOp,
-        interval: Option<&'a ast::Interval>,
-        a: &'a ast::Expr,
-        span: Span,
-    ) -> Option<Node> {
-        let name = match op {
-            UnaryOp::Next | UnaryOp::WeakNext => {
-                if let Some(interval) = interval {
-                    let message = "`X` and `N` take no interval";
-                    self.diagnostics.push(Diagnostic::error("misplaced-interval", interval.span, message));
-                }
-                let a = self.formula(a)?;
-                return Some(if op == UnaryOp::Next { Node::Next(a) } else { Node::WeakNext(a) });
-            }
-            UnaryOp::Finally => "F",
-            UnaryOp::Globally => "G",
-        };
-        let interval = self.interval(interval, name, span);
-        let a = self.formula(a)?;
-        let interval = interval?;
-        Some(if op == UnaryOp::Finally { Node::Finally(interval, a) } else { Node::Globally(interval, a) })
-    }
-
     /// The interval of an operator; `None` after a message.
-    fn interval(&mut self, interval: Option<&'a ast::Interval>, op: &str, span: Span) -> Option<Interval> {
+    fn interval(
+        &mut self,
+        interval: Option<&'a ast::Interval>,
+        op: Operator,
+        span: Span,
+    ) -> Option<Interval> {
+        let row = op.row();
+        if !row.interval {
+            return Some(Interval::ALWAYS);
+        }
         let Some(interval) = interval else {
             if let Mode::Within(_) = self.mode {
-                return Some(Interval { lo: 0, hi: None });
+                return Some(Interval::ALWAYS);
             }
+            let op = row.name;
             let message = format!("`{op}` has no bound");
             let help =
                 format!("give it an interval, such as `{op}[0,T]`, or the objective a length: `within K`");
@@ -243,20 +234,4 @@ pub(super) fn number_of_steps(
     };
     diagnostics.push(diagnostic);
     None
-}
-
-fn symbol(op: BinaryOp) -> &'static str {
-    match op {
-        BinaryOp::Until => "U",
-        BinaryOp::Release => "R",
-        BinaryOp::WeakUntil => "W",
-    }
-}
-
-fn temporal(op: BinaryOp) -> TemporalOp {
-    match op {
-        BinaryOp::Until => TemporalOp::Until,
-        BinaryOp::Release => TemporalOp::Release,
-        BinaryOp::WeakUntil => TemporalOp::WeakUntil,
-    }
 }

@@ -17,6 +17,7 @@ mod json;
 mod labels;
 mod limits;
 mod maps;
+mod meaning;
 mod objective;
 mod order;
 mod paths;

@@ -3,7 +3,8 @@
 use super::build::{F, b, problem, strategy, system, trace};
 use super::naive::{Naive, Path};
 use crate::{Budget, Defeat, Verdict, check, decide};
-use hyperplan_problem::{Mode, Quantifier, TemporalOp};
+use hyperplan_problem::{Mode, Quantifier};
+use hyperplan_syntax::ast::BinaryOp;
 
 #[test]
 fn an_inner_path_may_know_the_future_of_an_outer_one() {
@@ -57,9 +58,9 @@ impl Random {
             6 => F::N(sub()),
             7 => F::Fin(lo, Some(hi), sub()),
             8 => F::Glob(lo, Some(hi), sub()),
-            9 => F::Bin(TemporalOp::Until, lo, Some(hi), sub(), sub()),
+            9 => F::Bin(BinaryOp::Until, lo, Some(hi), sub(), sub()),
             _ => {
-                let op = [TemporalOp::Release, TemporalOp::WeakUntil][self.below(2) as usize];
+                let op = [BinaryOp::Release, BinaryOp::WeakUntil][self.below(2) as usize];
                 let lhs = b(self.formula(paths, depth - 1, later));
                 F::Bin(op, lo, Some(hi), lhs, b(self.formula(paths, depth - 1, later)))
             }

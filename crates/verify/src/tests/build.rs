@@ -2,9 +2,10 @@
 
 use hyperplan_problem::{
     ActionId, Clause, Comparison, Expr, Formula, FormulaId, Interval, Label, Leaf, Mode, Node, Objective,
-    PathId, PathLeaf, PathVar, Problem, Quantifier, Strategy, System, SystemId, TemporalOp, Trace, Type,
-    Update, Value, Var, VarId,
+    PathId, PathLeaf, PathVar, Problem, Quantifier, Strategy, System, SystemId, Trace, Type, Update, Value,
+    Var, VarId,
 };
+use hyperplan_syntax::ast::{BinaryOp, UnaryOp};
 use hyperplan_syntax::{SourceId, Span};
 
 pub(crate) const S: VarId = VarId(0);
@@ -58,7 +59,7 @@ pub(crate) enum F {
     N(Box<F>),
     Fin(u32, Option<u32>, Box<F>),
     Glob(u32, Option<u32>, Box<F>),
-    Bin(TemporalOp, u32, Option<u32>, Box<F>, Box<F>),
+    Bin(BinaryOp, u32, Option<u32>, Box<F>, Box<F>),
 }
 
 pub(crate) fn b(f: F) -> Box<F> {
@@ -67,6 +68,7 @@ pub(crate) fn b(f: F) -> Box<F> {
 
 fn push(f: &F, formula: &mut Formula) -> FormulaId {
     let p = |n: u32| PathId(n);
+    let interval = |lo: &u32, hi: &Option<u32>| Interval { lo: *lo, hi: *hi };
     let node = match f {
         F::At(q, n) => Node::Atom(is(PathLeaf::State(p(*q), Leaf::Var(S)), *n)),
         F::Took(q, a) => Node::Atom(Expr::Leaf(PathLeaf::Took(p(*q), ActionId(*a)))),
@@ -76,14 +78,24 @@ fn push(f: &F, formula: &mut Formula) -> FormulaId {
         F::Not(a) => Node::Not(push(a, formula)),
         F::And(fs) => Node::And(fs.iter().map(|f| push(f, formula)).collect()),
         F::Or(fs) => Node::Or(fs.iter().map(|f| push(f, formula)).collect()),
-        F::Implies(a, b) => Node::Implies(push(a, formula), push(b, formula)),
         F::Iff(a, b) => Node::Iff(push(a, formula), push(b, formula)),
         F::X(a) => Node::Next(push(a, formula)),
         F::N(a) => Node::WeakNext(push(a, formula)),
-        F::Fin(lo, hi, a) => Node::Finally(Interval { lo: *lo, hi: *hi }, push(a, formula)),
-        F::Glob(lo, hi, a) => Node::Globally(Interval { lo: *lo, hi: *hi }, push(a, formula)),
+        F::Implies(a, b) => {
+            let (a, b) = (push(a, formula), push(b, formula));
+            return formula.implies(a, b, span());
+        }
+        F::Fin(lo, hi, a) => {
+            let a = push(a, formula);
+            return formula.unary(UnaryOp::Finally, interval(lo, hi), a, span());
+        }
+        F::Glob(lo, hi, a) => {
+            let a = push(a, formula);
+            return formula.unary(UnaryOp::Globally, interval(lo, hi), a, span());
+        }
         F::Bin(op, lo, hi, a, b) => {
-            Node::Temporal(*op, Interval { lo: *lo, hi: *hi }, push(a, formula), push(b, formula))
+            let (a, b) = (push(a, formula), push(b, formula));
+            return formula.binary(*op, interval(lo, hi), a, b, span());
         }
     };
     formula.push(node, span())

@@ -1,7 +1,8 @@
 //! The semantics by the book: all paths enumerated, formulas evaluated recursively.
 
 use super::build::F;
-use hyperplan_problem::{Mode, TemporalOp};
+use hyperplan_problem::Mode;
+use hyperplan_syntax::ast::BinaryOp;
 
 /// States and actions; the action at position t is the one that led there.
 pub(crate) type Path = Vec<(i64, Option<u32>)>;
@@ -86,12 +87,12 @@ impl Naive<'_> {
             F::N(a) => !exists(t + 1) || self.eval(a, paths, t + 1),
             F::Fin(lo, hi, a) => window(*lo, *hi).any(|j| exists(j) && self.eval(a, paths, j)),
             F::Glob(lo, hi, a) => window(*lo, *hi).all(|j| !exists(j) || self.eval(a, paths, j)),
-            F::Bin(TemporalOp::Until, lo, hi, a, b) => until(*lo, *hi, a, b),
-            F::Bin(TemporalOp::Release, lo, hi, a, b) => {
+            F::Bin(BinaryOp::Until, lo, hi, a, b) => until(*lo, *hi, a, b),
+            F::Bin(BinaryOp::Release, lo, hi, a, b) => {
                 let (a, b) = (F::Not(a.clone()), F::Not(b.clone()));
                 !until(*lo, *hi, &a, &b)
             }
-            F::Bin(TemporalOp::WeakUntil, lo, hi, a, b) => {
+            F::Bin(BinaryOp::WeakUntil, lo, hi, a, b) => {
                 until(*lo, *hi, a, b) || window(0, *hi).all(|j| !exists(j) || self.eval(a, paths, j))
             }
         }

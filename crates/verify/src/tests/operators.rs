@@ -2,7 +2,8 @@
 
 use super::build::{F, b, problem, system};
 use crate::{Budget, decide};
-use hyperplan_problem::{Mode, TemporalOp};
+use hyperplan_problem::Mode;
+use hyperplan_syntax::ast::BinaryOp;
 
 const LINE: [(i64, u32, i64); 4] = [(0, 0, 1), (1, 0, 2), (2, 0, 3), (3, 0, 3)];
 
@@ -24,7 +25,7 @@ fn glob(lo: u32, hi: impl Into<Option<u32>>, n: i64) -> F {
     F::Glob(lo, hi.into(), at(n))
 }
 
-fn bin(op: TemporalOp, lo: u32, hi: impl Into<Option<u32>>, a: F, c: F) -> F {
+fn bin(op: BinaryOp, lo: u32, hi: impl Into<Option<u32>>, a: F, c: F) -> F {
     F::Bin(op, lo, hi.into(), b(a), b(c))
 }
 
@@ -40,17 +41,17 @@ fn bounded_operators_at_the_ends_of_their_intervals() {
         holds(&glob(3, 9, 3)) && !holds(&glob(2, 9, 3)) && holds(&glob(0, 0, 0)) && !holds(&glob(0, 1, 0))
     );
     let below = |n| F::Not(at(n));
-    let until = |lo, hi, a, c| bin(TemporalOp::Until, lo, hi, a, c);
+    let until = |lo, hi, a, c| bin(BinaryOp::Until, lo, hi, a, c);
     assert!(holds(&until(0, 2, below(2), F::At(0, 2))) && !holds(&until(0, 1, below(2), F::At(0, 2))));
     // The left operand counts from now on, not from the interval's beginning, and not where the right one holds.
     assert!(!holds(&until(2, 3, below(0), F::At(0, 2))) && holds(&until(2, 3, below(2), F::At(0, 2))));
     assert!(!holds(&until(1, 1, F::At(0, 1), F::At(0, 1))) && holds(&until(0, 0, F::At(0, 9), F::At(0, 0))));
-    let release = |lo, hi, a, c| bin(TemporalOp::Release, lo, hi, a, c);
+    let release = |lo, hi, a, c| bin(BinaryOp::Release, lo, hi, a, c);
     assert!(holds(&release(0, 9, F::At(0, 1), below(2))) && !holds(&release(0, 9, F::At(0, 2), below(2))));
     assert!(
         holds(&release(2, 9, F::At(0, 1), F::At(0, 9))) && !holds(&release(1, 9, F::At(0, 1), F::At(0, 9)))
     );
-    let weak = |lo, hi, a, c| bin(TemporalOp::WeakUntil, lo, hi, a, c);
+    let weak = |lo, hi, a, c| bin(BinaryOp::WeakUntil, lo, hi, a, c);
     assert!(holds(&weak(0, 1, below(2), F::At(0, 9))) && !holds(&weak(0, 2, below(2), F::At(0, 9))));
     assert!(holds(&weak(0, 2, below(2), F::At(0, 2))) && !holds(&weak(3, 3, below(2), F::At(0, 3))));
     assert!(holds(&F::X(at(1))) && holds(&F::N(at(1))) && !holds(&F::N(at(0))));
@@ -72,15 +73,15 @@ fn within_cuts_the_trace() {
     // X true holds but at the last position.
     let strong = F::X(b(tautology.clone()));
     assert!(holds(2, &F::Glob(0, Some(1), b(strong.clone()))) && !holds(2, &F::Glob(0, None, b(strong))));
-    let until = |lo, hi: Option<u32>, c| bin(TemporalOp::Until, lo, hi, tautology.clone(), c);
+    let until = |lo, hi: Option<u32>, c| bin(BinaryOp::Until, lo, hi, tautology.clone(), c);
     assert!(!holds(1, &until(2, None, tautology.clone())) && holds(2, &until(2, None, tautology.clone())));
     let contradiction = || not(tautology.clone());
-    let release = |lo, hi: Option<u32>, a, c| bin(TemporalOp::Release, lo, hi, a, c);
+    let release = |lo, hi: Option<u32>, a, c| bin(BinaryOp::Release, lo, hi, a, c);
     assert!(holds(1, &release(2, None, contradiction(), contradiction())));
     assert!(!holds(2, &release(2, None, contradiction(), contradiction())));
     assert!(holds(2, &release(0, None, contradiction(), not(F::At(0, 3)))));
     assert!(!holds(3, &release(0, None, contradiction(), not(F::At(0, 3)))));
-    let weak = |k, a, c| holds(k, &bin(TemporalOp::WeakUntil, 0, None, a, c));
+    let weak = |k, a, c| holds(k, &bin(BinaryOp::WeakUntil, 0, None, a, c));
     assert!(weak(2, not(F::At(0, 3)), F::At(0, 9)) && !weak(3, not(F::At(0, 3)), F::At(0, 9)));
 }
 

@@ -4,9 +4,10 @@ use super::build::span;
 use crate::{Budget, Defeat, Verdict, check};
 use hyperplan_problem::{
     ActionId, Clause, Comparison, Expr, Formula, Interval, Label, LabelId, Leaf, Mode, Node, Objective,
-    PathId, PathLeaf, PathVar, Problem, Quantifier, State, Strategy, System, SystemId, TemporalOp, Trace,
-    Type, Update, Value, Var, VarId,
+    PathId, PathLeaf, PathVar, Problem, Quantifier, State, Strategy, System, SystemId, Trace, Type, Update,
+    Value, Var, VarId,
 };
+use hyperplan_syntax::ast::{BinaryOp, UnaryOp};
 
 const X: VarId = VarId(0);
 const Y: VarId = VarId(1);
@@ -54,12 +55,11 @@ fn shortest(n: i64, horizon: u32) -> Problem {
     };
     let (start_p, goal_p, start_q, goal_q) = (label(0, 0), label(0, 1), label(1, 0), label(1, 1));
     let interval = Interval { lo: 0, hi: Some(horizon) };
-    let mut add = |node| f.push(node, span());
-    let reach = add(Node::Finally(interval, goal_p));
-    let not_yet = add(Node::Not(goal_q));
-    let until = add(Node::Temporal(TemporalOp::Until, interval, not_yet, goal_p));
-    let slower = add(Node::Implies(start_q, until));
-    add(Node::And(vec![start_p, reach, slower]));
+    let reach = f.unary(UnaryOp::Finally, interval, goal_p, span());
+    let not_yet = f.push(Node::Not(goal_q), span());
+    let until = f.binary(BinaryOp::Until, interval, not_yet, goal_p, span());
+    let slower = f.implies(start_q, until, span());
+    f.push(Node::And(vec![start_p, reach, slower]), span());
     let path =
         |name: &str, quantifier| PathVar { name: name.into(), quantifier, system: SystemId(0), span: span() };
     let paths = vec![path("p", Quantifier::Exists), path("q", Quantifier::Forall)];

@@ -2,7 +2,8 @@
 
 use super::build::{F, b, numbers, problem, strategy, system, trace};
 use crate::{Budget, Defeat, Error, Verdict, check};
-use hyperplan_problem::{Mode, PathId, Problem, TemporalOp, Trace};
+use hyperplan_problem::{Mode, PathId, Problem, Trace};
+use hyperplan_syntax::ast::BinaryOp;
 
 /// A square with a shortcut: 0 -> 1 -> 3, 0 -> 2 -> 3 by action 1, 0 -> 3 by action 2, 3 loops by action 0; 4 is
 /// a dead end behind 2.
@@ -19,7 +20,7 @@ fn run(problem: &Problem, traces: &[Trace]) -> Result<Verdict, Error> {
 
 /// p reaches 3 within 2 steps, and nobody does so sooner.
 fn fastest() -> F {
-    let slower = F::Bin(TemporalOp::Until, 0, Some(2), b(F::Not(b(F::At(1, 3)))), b(F::At(0, 3)));
+    let slower = F::Bin(BinaryOp::Until, 0, Some(2), b(F::Not(b(F::At(1, 3)))), b(F::At(0, 3)));
     F::And(vec![F::Fin(0, Some(2), b(F::At(0, 3))), slower])
 }
 

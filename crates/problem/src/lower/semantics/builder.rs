@@ -1,18 +1,15 @@
 //! Building formulas on finite traces: constants folded, equal parts shared.
 
 use crate::expr::{Expr, PathLeaf};
+use crate::formula::{Formula, Interval, Node};
 use crate::ids::FormulaId;
-use crate::objective::{Formula, Interval, Node, TemporalOp};
 use hyperplan_syntax::Span;
 use rustc_hash::FxHashMap;
 use std::mem::Discriminant;
 use typed_index_collections::TiVec;
 
-/// Every later position, and the present one.
-pub(super) const ALWAYS: Interval = Interval { lo: 0, hi: None };
-
 /// A node by what it is made of; atoms have no key.
-type Key = (Discriminant<Node>, Option<TemporalOp>, Option<Interval>, Vec<FormulaId>);
+type Key = (Discriminant<Node>, Option<Interval>, Vec<FormulaId>);
 
 pub(super) struct Builder<'a> {
     source: &'a Formula,
@@ -109,7 +106,7 @@ impl<'a> Builder<'a> {
         match a {
             Self::FALSE => a,
             Self::TRUE if interval.lo == 0 => a,
-            _ => self.intern(Node::Finally(interval, a)),
+            _ => self.intern(Node::Until(interval, Self::TRUE, a)),
         }
     }
 
@@ -117,7 +114,7 @@ impl<'a> Builder<'a> {
         match a {
             Self::TRUE => a,
             Self::FALSE if interval.lo == 0 => a,
-            _ => self.intern(Node::Globally(interval, a)),
+            _ => self.intern(Node::Release(interval, Self::FALSE, a)),
         }
     }
 
@@ -125,7 +122,7 @@ impl<'a> Builder<'a> {
         match (a, b) {
             (Self::TRUE, _) | (_, Self::FALSE) => self.finally(interval, b),
             (_, Self::TRUE) if interval.lo == 0 => b,
-            _ => self.intern(Node::Temporal(TemporalOp::Until, interval, a, b)),
+            _ => self.intern(Node::Until(interval, a, b)),
         }
     }
 
@@ -133,17 +130,16 @@ impl<'a> Builder<'a> {
         match (a, b) {
             (Self::FALSE, _) | (_, Self::TRUE) => self.globally(interval, b),
             (_, Self::FALSE) if interval.lo == 0 => b,
-            _ => self.intern(Node::Temporal(TemporalOp::Release, interval, a, b)),
+            _ => self.intern(Node::Release(interval, a, b)),
         }
     }
 
     fn intern(&mut self, node: Node) -> FormulaId {
-        let (op, interval) = match &node {
-            Node::Temporal(op, interval, ..) => (Some(*op), Some(*interval)),
-            Node::Finally(interval, _) | Node::Globally(interval, _) => (None, Some(*interval)),
-            _ => (None, None),
+        let interval = match node {
+            Node::Until(interval, ..) | Node::Release(interval, ..) => Some(interval),
+            _ => None,
         };
-        let key = (std::mem::discriminant(&node), op, interval, node.children());
+        let key = (std::mem::discriminant(&node), interval, node.children());
         if let Some(&known) = self.index.get(&key) {
             return known;
         }

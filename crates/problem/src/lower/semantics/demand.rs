@@ -1,7 +1,7 @@
 //! Which nodes are needed with which sign, and where they are read.
 
+use crate::formula::{Formula, Node};
 use crate::ids::FormulaId;
-use crate::objective::{Formula, Node};
 use typed_index_collections::TiVec;
 
 /// What is asked of a node in the negation normal form.
@@ -27,8 +27,8 @@ pub(super) fn demands(formula: &Formula) -> TiVec<FormulaId, Demand> {
         let flipped = [signs[1], signs[0]];
         let position = match node {
             Node::Next(_) | Node::WeakNext(_) => position.and_then(|p| p.checked_add(1)),
-            Node::Finally(..) | Node::Globally(..) | Node::Temporal(..) => None,
-            _ => position,
+            Node::Until(..) | Node::Release(..) => None,
+            Node::Atom(_) | Node::Not(_) | Node::And(_) | Node::Or(_) | Node::Iff(..) => position,
         };
         let mut ask = |child: FormulaId, signs: [bool; 2]| {
             let demand = &mut demands[child];
@@ -38,10 +38,6 @@ pub(super) fn demands(formula: &Formula) -> TiVec<FormulaId, Demand> {
         };
         match node {
             Node::Not(a) => ask(*a, flipped),
-            Node::Implies(a, b) => {
-                ask(*a, flipped);
-                ask(*b, signs);
-            }
             Node::Iff(a, b) => {
                 ask(*a, [true; 2]);
                 ask(*b, [true; 2]);

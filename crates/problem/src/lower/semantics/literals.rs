@@ -1,8 +1,8 @@
 //! Splitting atoms that read actions at their connectives, into literals.
 
 use crate::expr::{Expr, PathLeaf};
+use crate::formula::{Formula, Node};
 use crate::ids::FormulaId;
-use crate::objective::{Formula, Node};
 use hyperplan_syntax::Span;
 use typed_index_collections::TiVec;
 

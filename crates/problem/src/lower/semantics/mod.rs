@@ -13,8 +13,9 @@
 //! nothing can change there either.
 //!
 //! All of this is defined on the *negation normal form*, so that `opt(f)` is `!pes(!f)` and `hopt(f)` is `!hpes(!f)`:
-//! negation is pushed to the literals through connectives and operators, `a -> b` being `!a | b`, `a <-> b` being
-//! `(a & b) | (!a & !b)`, `if c then a else b` being `(c & a) | (!c & b)` and `a W[l,h] b` being `(a U[l,h] b) | G[0,h] a`.
+//! negation is pushed to the literals through the forms of the core, `a <-> b` being `(a & b) | (!a & !b)` and
+//! `if c then a else b` being `(c & a) | (!c & b)`. What else is written was lowered to the core before, as the table of
+//! operators says.
 //! A literal is what remains: an atom that reads no action, or one that has no connective at its top
 //! ([`literals`]).
 //!
@@ -37,7 +38,8 @@
 //! - `f R[a,b] g` is the dual: `now(f) R[a,b] now(g) & (exists(b) | F now(f) | end(g) | !exists(a - 1) & end(f))`.
 //! - Beyond K the same, where d <= 0: `later(f U[a,b] g)` is `later(g) & later(f)`, without the second if a = 0.
 //!
-//! Without an end, `exists(b)` is false. `F` and `G` are `U` and `R` with a constant on the left.
+//! Without an end, `exists(b)` is false. The `true` of `F`, which is `true U`, and the `false` of `G` are no subformulas:
+//! they have their values beyond the trace too.
 //!
 //! Every node of the formula is translated once for each sign, and the result shares what can be shared, so its size
 //! is linear.
@@ -48,8 +50,9 @@ mod literals;
 mod reading;
 
 use crate::expr::{Expr, PathLeaf};
+use crate::formula::{Formula, Interval};
 use crate::ids::PathId;
-use crate::objective::{Formula, Interval, Semantics};
+use crate::objective::Semantics;
 use builder::Builder;
 use demand::demands;
 use literals::literals;

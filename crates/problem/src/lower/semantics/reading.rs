@@ -1,10 +1,10 @@
 //! One reading of a formula: what is assumed beyond the trace, and the translation under it.
 
-use super::builder::{ALWAYS, Builder};
+use super::builder::Builder;
 use super::demand::Demand;
 use super::literals::reads_actions;
+use crate::formula::{Formula, Interval, Node};
 use crate::ids::FormulaId;
-use crate::objective::{Formula, Interval, Node, TemporalOp};
 use typed_index_collections::{TiSlice, TiVec};
 
 /// What holds at the positions beyond K.
@@ -33,7 +33,6 @@ struct Reads {
     later: FormulaId,
 }
 
-const TRUE: Reads = Reads { now: Builder::TRUE, later: Builder::TRUE };
 const FALSE: Reads = Reads { now: Builder::FALSE, later: Builder::FALSE };
 
 /// The negation of each subformula, and it itself; `FALSE` where it is not needed.
@@ -72,34 +71,17 @@ impl Reading<'_> {
                 let parts: Vec<Reads> = ids.iter().map(|&id| of(id, sign)).collect();
                 self.join(builder, matches!(self.source.nodes[id], Node::And(_)) == sign, &parts)
             }
-            Node::Implies(a, b) => self.join(builder, !sign, &[of(*a, !sign), of(*b, sign)]),
             Node::Iff(a, b) => {
                 let left = self.join(builder, true, &[of(*a, true), of(*b, sign)]);
                 let right = self.join(builder, true, &[of(*a, false), of(*b, !sign)]);
                 self.join(builder, false, &[left, right])
             }
             Node::Next(a) | Node::WeakNext(a) => self.next(builder, of(*a, sign), at),
-            Node::Finally(interval, a) => {
-                let left = if sign { TRUE } else { FALSE };
-                self.until(builder, sign, *interval, at, left, of(*a, sign))
+            Node::Until(interval, a, b) => {
+                self.until(builder, sign, *interval, at, of(*a, sign), of(*b, sign))
             }
-            Node::Globally(interval, a) => {
-                let left = if sign { FALSE } else { TRUE };
-                self.until(builder, !sign, *interval, at, left, of(*a, sign))
-            }
-            Node::Temporal(op, interval, a, b) => {
-                let (left, right) = (of(*a, sign), of(*b, sign));
-                match op {
-                    TemporalOp::Until => self.until(builder, sign, *interval, at, left, right),
-                    TemporalOp::Release => self.until(builder, !sign, *interval, at, left, right),
-                    TemporalOp::WeakUntil => {
-                        let whole = Interval { lo: 0, hi: interval.hi };
-                        let neutral = if sign { FALSE } else { TRUE };
-                        let until = self.until(builder, sign, *interval, at, left, right);
-                        let always = self.until(builder, !sign, whole, at, neutral, left);
-                        self.join(builder, !sign, &[until, always])
-                    }
-                }
+            Node::Release(interval, a, b) => {
+                self.until(builder, !sign, *interval, at, of(*a, sign), of(*b, sign))
             }
         }
     }
@@ -111,10 +93,10 @@ impl Reading<'_> {
             builder.join(and, &parts)
         };
         let now = all(|p| p.now);
-        // Without parts, too, nothing but the constant holds or fails beyond.
         let later = match self.beyond {
-            Beyond::Constant(holds) => Builder::constant(holds),
-            Beyond::Repeated { .. } => all(|p| p.later),
+            Beyond::Constant(holds) if !parts.is_empty() => Builder::constant(holds),
+            // Without parts it is part of what an operator means, and no subformula.
+            Beyond::Constant(_) | Beyond::Repeated { .. } => all(|p| p.later),
         };
         Reads { now, later }
     }
@@ -154,14 +136,14 @@ impl Reading<'_> {
             let inside =
                 if outside_only { Builder::FALSE } else { builder.until(interval, left.now, right.now) };
             let reaches_out = builder.not(ends_inside);
-            let stay = builder.globally(ALWAYS, left.now);
+            let stay = builder.globally(Interval::ALWAYS, left.now);
             let wait = builder.or(&[begins_before, end_left]);
             let outside = builder.and(&[reaches_out, stay, end_right, wait]);
             builder.or(&[inside, outside])
         } else {
             let inside =
                 if outside_only { Builder::TRUE } else { builder.release(interval, left.now, right.now) };
-            let released = builder.finally(ALWAYS, left.now);
+            let released = builder.finally(Interval::ALWAYS, left.now);
             let begins_out = builder.not(begins_before);
             let released_there = builder.and(&[begins_out, end_left]);
             let outside = builder.or(&[ends_inside, released, end_right, released_there]);
@@ -194,5 +176,5 @@ fn end(builder: &mut Builder, later: FormulaId) -> FormulaId {
     }
     let last = builder.last();
     let at_end = builder.and(&[last, later]);
-    builder.finally(ALWAYS, at_end)
+    builder.finally(Interval::ALWAYS, at_end)
 }

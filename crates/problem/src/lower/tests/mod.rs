@@ -2,6 +2,7 @@ mod display;
 mod graphs;
 mod grids;
 mod interpreter;
+mod meaning;
 mod objectives;
 mod semantics;
 mod systems;

@@ -1,7 +1,6 @@
 use super::{codes, lowered, lowered_with, messages, ok};
 use crate::{
-    Expr, Interval, Leaf, Mode, Node, Objective, Overrides, PathId, PathLeaf, Problem, Quantifier,
-    TemporalOp, display,
+    Expr, Interval, Leaf, Mode, Node, Objective, Overrides, PathId, PathLeaf, Problem, Quantifier, display,
 };
 
 const ROOMS: &str = "const T = 6;
@@ -40,9 +39,9 @@ fn nodes_and_atoms() {
         &o.formula.nodes[parts[0]],
         Node::Atom(Expr::Leaf(PathLeaf::State(PathId(0), Leaf::Label(_))))
     ));
-    assert!(matches!(&o.formula.nodes[parts[1]], Node::Finally(Interval { lo: 0, hi: Some(6) }, _)));
-    let Node::Implies(_, until) = &o.formula.nodes[parts[2]] else { panic!() };
-    let Node::Temporal(TemporalOp::Until, i, not, _) = &o.formula.nodes[*until] else { panic!() };
+    assert!(matches!(o.formula.finally(parts[1]), Some((Interval { lo: 0, hi: Some(6) }, _))));
+    let Some((_, until)) = o.formula.implication(parts[2]) else { panic!() };
+    let Node::Until(i, not, _) = &o.formula.nodes[until] else { panic!() };
     assert_eq!(*i, Interval { lo: 1, hi: Some(6) });
     assert!(matches!(&o.formula.nodes[*not], Node::Not(_)));
     for (id, node) in o.formula.nodes.iter_enumerated() {
@@ -90,7 +89,7 @@ fn within_a_length() {
     let (_, o) = objective("objective o within T + 1 { exists p. F goal[p] & G[1,2] b[p] }");
     assert_eq!(o.mode, Mode::Within(7));
     let unbounded =
-        o.formula.nodes.iter().any(|n| matches!(n, Node::Finally(Interval { lo: 0, hi: None }, _)));
+        o.formula.nodes.keys().any(|id| matches!(o.formula.finally(id), Some((Interval::ALWAYS, _))));
     assert!(unbounded);
     let (_, o) = objective("objective o within T = action_robust(start, goal, b, T);");
     assert_eq!(o.mode, Mode::Within(6));
