@@ -105,15 +105,69 @@ pub struct Objective {
 }
 
 impl Objective {
+    /// The blocks of the quantifier prefix: its maximal runs of one quantifier, outermost first.
+    #[must_use]
+    pub fn blocks(&self) -> Vec<Vec<PathId>> {
+        let paths: Vec<PathId> = self.paths.keys().collect();
+        paths
+            .chunk_by(|&a, &b| self.paths[a].quantifier == self.paths[b].quantifier)
+            .map(<[PathId]>::to_vec)
+            .collect()
+    }
+
     /// The path variables of the leading block: those before the first change of quantifier.
     #[must_use]
     pub fn leading_block(&self) -> Vec<PathId> {
-        let first = self.paths.first().map(|p| p.quantifier);
-        self.paths
-            .iter_enumerated()
-            .take_while(|(_, p)| Some(p.quantifier) == first)
-            .map(|(id, _)| id)
-            .collect()
+        self.blocks().into_iter().next().unwrap_or_default()
+    }
+
+    /// Whether the formula compares actions or states of some two paths.
+    #[must_use]
+    pub fn has_ties(&self) -> bool {
+        let mut paths = self.paths.keys();
+        paths.any(|path| !self.tied_before(path).is_empty() || !self.compared_before(path).is_empty())
+    }
+
+    /// Whether the formula ties two paths: it compares their actions or states.
+    #[must_use]
+    pub fn ties(&self, first: PathId, second: PathId) -> bool {
+        [self.tied_before(second), self.compared_before(second)].iter().any(|ties| ties.contains(&first))
+    }
+
+    /// The paths quantified before this one whose actions the formula compares with its own.
+    #[must_use]
+    pub fn tied_before(&self, path: PathId) -> Vec<PathId> {
+        self.partners(path, |leaf| match *leaf {
+            PathLeaf::SameAction(p, q) => Some((p, q)),
+            _ => None,
+        })
+    }
+
+    /// The paths quantified before this one whose states the formula compares with its own.
+    #[must_use]
+    pub fn compared_before(&self, path: PathId) -> Vec<PathId> {
+        self.partners(path, |leaf| match *leaf {
+            PathLeaf::SameState(p, q) => Some((p, q)),
+            _ => None,
+        })
+    }
+
+    fn partners(&self, path: PathId, pair: impl Fn(&PathLeaf) -> Option<(PathId, PathId)>) -> Vec<PathId> {
+        let mut partners = Vec::new();
+        for node in &self.formula.nodes {
+            let Node::Atom(expr) = node else { continue };
+            expr.for_each_leaf(&mut |leaf| {
+                if let Some((p, q)) = pair(leaf) {
+                    let other = if p == path { q } else { p };
+                    if (p == path || q == path) && other < path {
+                        partners.push(other);
+                    }
+                }
+            });
+        }
+        partners.sort_unstable();
+        partners.dedup();
+        partners
     }
 
     /// The path variable with that name.
