@@ -1,10 +1,26 @@
 //! What the symbols of paths are called.
 
-use crate::choice::{Alphabet, Choice, Place};
-use crate::graph::{Graph, Letter, StateIx};
-use hyperplan_problem::{Problem, System, Type, Value};
-use hyperplan_smt::{Script, Terms};
+use hyperplan_problem::{PathId, Problem, System, Type, Value};
+use hyperplan_relevance::Task;
+use hyperplan_smt::Script;
+use hyperplan_space::{Graph, Letter, StateIx};
+use rustc_hash::FxHashMap;
 use std::borrow::Cow;
+use std::sync::{Mutex, PoisonError};
+
+/// How many paths each path variable has stood for, so that all have names of their own.
+#[derive(Debug, Default)]
+pub struct Copies(Mutex<FxHashMap<PathId, u32>>);
+
+impl Copies {
+    /// Names for one more.
+    pub(crate) fn next<'a>(&self, task: &Task<'a>, path: PathId) -> Names<'a> {
+        let mut copies = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let copy = copies.entry(path).or_default();
+        *copy += 1;
+        Names::new(task, path, *copy - 1)
+    }
+}
 
 /// Names the symbols of one path.
 pub(crate) struct Names<'a> {
@@ -24,7 +40,14 @@ fn plain(name: &str, number: u32) -> Cow<'_, str> {
     }
 }
 
-impl Names<'_> {
+impl<'a> Names<'a> {
+    /// Names for a copy of a path variable.
+    pub(crate) fn new(task: &Task<'a>, path: PathId, copy: u32) -> Self {
+        let name = &task.objective.paths[path].name;
+        let name = if copy == 0 { name.clone() } else { format!("{name}~{copy}") };
+        Names { problem: task.problem, system: task.system(path), path: name }
+    }
+
     /// `p.at.3.4`: path p is where the first variable is 3 and the second 4.
     pub(crate) fn state(&self, graph: &Graph, state: StateIx) -> String {
         let mut name = format!("{}.at", self.path);
@@ -63,31 +86,5 @@ impl Names<'_> {
     pub(crate) fn begin_step(&self, script: &mut Script, step: usize) {
         let path = &self.path;
         script.section(format!("path.{path}.{step}"), format!("path {path}: step {step}"));
-    }
-
-    /// Which of some states it is.
-    pub(crate) fn choose_state(
-        &self,
-        terms: &mut Terms,
-        graph: &Graph,
-        states: &[StateIx],
-        place: &Place,
-        alphabet: &Alphabet,
-    ) -> Choice {
-        let whole = format!("{}.at", self.path);
-        Choice::new(terms, alphabet.states, states, place, |state| self.state(graph, state), &whole)
-    }
-
-    /// Which of some letters it is.
-    pub(crate) fn choose_letter(
-        &self,
-        terms: &mut Terms,
-        graph: &Graph,
-        letters: &[Letter],
-        place: &Place,
-        alphabet: &Alphabet,
-    ) -> Choice {
-        let whole = format!("{}.do", self.path);
-        Choice::new(terms, alphabet.letters, letters, place, |letter| self.letter(graph, letter), &whole)
     }
 }

@@ -1,6 +1,6 @@
-use crate::goal::Goal;
 use crate::unroll::{AtomTerms, Unroller};
-use hyperplan_problem::{Expr, Formula, FormulaId, Interval, Mode, Node};
+use hyperplan_problem::{Expr, Formula, FormulaId, Interval, Mode, Node, PathLeaf};
+use hyperplan_relevance::Goal;
 use hyperplan_smt::{Sort, Term, Terms};
 use hyperplan_syntax::ast::{BinaryOp, UnaryOp};
 use hyperplan_syntax::{SourceId, Span};
@@ -11,7 +11,7 @@ const SPAN: Span = Span { source: SourceId(0), start: 0, end: 0 };
 struct Free;
 
 impl AtomTerms for Free {
-    fn atom(&mut self, terms: &mut Terms, atom: FormulaId, time: u32) -> Term {
+    fn atom(&mut self, terms: &mut Terms, (atom, _): (FormulaId, &Expr<PathLeaf>), time: u32) -> Term {
         let stem = terms.stem(&format!("a{}", atom.0));
         terms.symbol(stem, Some(time), Sort::Bool)
     }

@@ -6,15 +6,15 @@
 //!
 //! `R` is `U` through duality: negation of a term costs nothing.
 
-use crate::goal::Goal;
-use hyperplan_problem::{Formula, FormulaId, Interval, Mode, Node};
+use hyperplan_problem::{Expr, Formula, FormulaId, Interval, Mode, Node, PathLeaf};
+use hyperplan_relevance::Goal;
 use hyperplan_smt::{Term, Terms};
 use rustc_hash::FxHashMap;
 
 /// Gives the term of an atom at a time. Under `within K` times are `0..=K`; in bounded mode no path is asked about
 /// beyond its horizon.
 pub(crate) trait AtomTerms {
-    fn atom(&mut self, terms: &mut Terms, atom: FormulaId, time: u32) -> Term;
+    fn atom(&mut self, terms: &mut Terms, atom: (FormulaId, &Expr<PathLeaf>), time: u32) -> Term;
 }
 
 /// The unrolling of one formula over one choice of paths.
@@ -82,7 +82,7 @@ impl<'a, A: AtomTerms> Unroller<'a, A> {
         }
         let formula = self.formula;
         let term = match &formula.nodes[id] {
-            Node::Atom(_) => self.atoms.atom(terms, id, time),
+            Node::Atom(expr) => self.atoms.atom(terms, (id, expr), time),
             Node::Not(a) => !self.at(terms, *a, time),
             Node::And(ids) | Node::Or(ids) => {
                 let parts: Vec<Term> = ids.iter().map(|&id| self.at(terms, id, time)).collect();

@@ -4,9 +4,9 @@
 //! integer or real term where they are not. The conditions of a list of cases exclude each other and cover everything *on the assumption that
 //! the path is a path*, which every use is guarded by.
 
-use crate::eval::{bounds, code};
 use hyperplan_problem::{Comparison, Expr, TupleSet, Type, Value};
 use hyperplan_smt::{Rational, Sort, Term, Terms};
+use hyperplan_space::{bounds, code};
 use std::collections::BTreeMap;
 
 /// The value of an expression at one time.

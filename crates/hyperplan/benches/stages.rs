@@ -7,7 +7,7 @@ mod common;
 
 use common::{Case, OBJECTIVES, wanted_size};
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
-use hyperplan_encode::{Encoder, Goal, Limits, Query};
+use hyperplan_encode::{Encoder, Goal, Limits, Narrowing, Query, Relevant};
 use hyperplan_horizon::horizons;
 use hyperplan_plan::{Config, EmitConfig, Emitted, Quantifiers, Status, emit, solve};
 use hyperplan_problem::{Objective, Problem};
@@ -76,7 +76,7 @@ fn reach(criterion: &mut Criterion, name: &str, _: &Case, problem: &Problem) {
     let goal = Goal::new(&objective(problem).formula, true);
     let leading = objective(problem).leading_block();
     criterion.bench_function(&format!("reach/{name}"), |b| {
-        b.iter(|| Query::new(&encoder, &[]).is_hopeless(&leading, &goal).expect("it is within the budget"));
+        b.iter(|| encoder.relevant(&leading, &goal, Narrowing::default()).expect("it is within the budget"));
     });
 }
 
@@ -85,7 +85,7 @@ fn unroll(criterion: &mut Criterion, name: &str, _: &Case, problem: &Problem) {
     let encoder = encoder(problem);
     let goal = Goal::new(&objective(problem).formula, true);
     let declared = || {
-        let mut query = Query::new(&encoder, &[]);
+        let mut query = Query::new(&encoder, &[], Relevant::default());
         let paths = objective(problem).paths.keys();
         let env =
             paths.map(|path| Some(query.declare(path, &goal).expect("it is within the budget"))).collect();

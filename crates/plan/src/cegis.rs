@@ -13,10 +13,10 @@
 //! finitely many, and the search ends.
 
 use crate::oracle::{Dialogue, Oracle, Stop};
-use hyperplan_encode::{Copies, Encoder, Env, Goal, Instance, Known, Narrowing, Query};
+use hyperplan_encode::{Copies, Encoder, Env, Goal, Instance, Known, Narrowing, Query, Relevant};
 use hyperplan_problem::PathId;
 use hyperplan_smt::{Model, Term};
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// Counterexamples asked for in one round.
 const PER_ROUND: usize = 8;
@@ -39,7 +39,7 @@ pub(crate) struct Cegis<'s, 'a, 'c> {
     /// Whether nothing has been lost thereby, so that nothing found means that there is nothing.
     pub(crate) exact: bool,
     /// How paths are named in all queries.
-    copies: Rc<Copies>,
+    copies: Arc<Copies>,
 }
 
 /// An instance of the formula up to a block of the other player.
@@ -89,7 +89,7 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
             most_checks: None,
             narrowing: Narrowing::default(),
             exact: true,
-            copies: Rc::default(),
+            copies: Arc::default(),
         }
     }
 
@@ -159,25 +159,19 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
     ) -> Result<Round<'s, 'a>, Stop> {
         let dialogue = self.oracle.open(1, incremental)?;
         let encoder = self.encoder;
-        let mut query = Query::new(encoder, known).beside(&self.copies);
-        if level == 0 {
-            query = query.narrowed(self.narrowing);
-            query.explore_block(&self.blocks[level], goal)?;
-        }
-        let mut env = query.empty_env();
+        let relevant = match level {
+            0 => encoder.relevant(&self.blocks[level], goal, self.narrowing)?,
+            _ => Relevant::default(),
+        };
+        self.exact &= relevant.is_exact();
+        let mut query = Query::beside(encoder, known, relevant, &self.copies);
+        let mut env = query.known();
         let mut recipes = vec![None; env.len()];
-        for (at, path) in known.iter().enumerate() {
-            if let Some(path) = path {
-                env[at] = Some(query.fix(PathId::from(at), path));
-            }
-        }
         for &path in &self.blocks[level] {
             env[usize::from(path)] = Some(query.declare(path, goal)?);
             recipes[usize::from(path)] = Some(Recipe::Declared);
         }
         let formula = &encoder.objective.formula;
-        query.widen();
-        self.exact &= query.is_exact();
         let (own, rest) = goal.split(formula, &|path| env[usize::from(path)].is_some());
         query.demand(&env, &own);
         let against = rest.opposed(formula);
@@ -210,9 +204,9 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
         let mut assignment = known.clone();
         for (at, recipe) in game.recipes.iter().enumerate() {
             let path = PathId::from(at);
-            match (recipe, &game.env[at]) {
+            match (recipe, game.env[at]) {
                 (Some(Recipe::Declared), Some(terms)) => {
-                    let decoded = round.query.decode(path, terms, model);
+                    let decoded = round.query.decode(terms, model);
                     assignment[at] = Some(decoded.ok_or_else(|| self.no_path(round))?);
                 }
                 (Some(Recipe::Instance(instance)), _) => {
@@ -258,8 +252,8 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
         next.level += 1;
         if absolute && game.guard == Term::TRUE && next.level == self.blocks.len() {
             for &path in &self.blocks[game.level - 1] {
-                if let Some(terms) = &game.env[usize::from(path)] {
-                    round.query.restrict(path, terms, &round.goal, &beside)?;
+                if let Some(terms) = game.env[usize::from(path)] {
+                    round.query.restrict(terms, &round.goal, &beside)?;
                 }
             }
         }
@@ -280,8 +274,7 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
         let mut alike = Vec::new();
         let mut absolute = true;
         for &path in &self.blocks[level] {
-            if let (Some(own), Some(terms)) =
-                (&answer[usize::from(path)], &round.first.env[usize::from(path)])
+            if let (Some(own), Some(terms)) = (&answer[usize::from(path)], round.first.env[usize::from(path)])
             {
                 let instance = self.encoder.generalize(path, own, answer);
                 absolute &= instance.is_absolute();
@@ -311,8 +304,8 @@ impl Round<'_, '_> {
         let mut symbols = Vec::new();
         for game in std::iter::once(&self.first).chain(&self.games) {
             for (path, recipe) in game.env.iter().zip(&game.recipes) {
-                if let (Some(path), Some(Recipe::Declared)) = (path, recipe) {
-                    symbols.extend(path.symbols());
+                if let (Some(path), Some(Recipe::Declared)) = (*path, recipe) {
+                    symbols.extend(self.query.symbols(path));
                 }
             }
         }

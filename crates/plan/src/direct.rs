@@ -1,7 +1,7 @@
 //! One query for the whole objective: with its quantifiers, or expanded.
 
 use crate::oracle::{Oracle, Stop};
-use hyperplan_encode::{Encoder, Env, Error, Goal, Known, Narrowing, Path, Query};
+use hyperplan_encode::{Bound, Encoder, Env, Error, Goal, Known, Narrowing, Query, Written};
 use hyperplan_problem::{PathId, display};
 use hyperplan_smt::{Script, Term};
 
@@ -9,6 +9,8 @@ use hyperplan_smt::{Script, Term};
 pub(crate) struct Direct<'e, 'a> {
     pub(crate) query: Query<'e, 'a>,
     env: Env,
+    /// Whether all runs of the leading block are in it, so that nothing found means that there is nothing.
+    pub(crate) exact: bool,
 }
 
 /// Builds the query with the quantifiers of later blocks inside, the paper's formula (16): a path constraint is a
@@ -27,20 +29,20 @@ pub(crate) fn keep<'e, 'a>(
     for (depth, block) in blocks.iter().enumerate().skip(1) {
         let own = depth % 2 == 0;
         for &path in block {
-            let (terms, bound, guard) = direct.query.bind(path, if own { &goal } else { &against })?;
-            env[usize::from(path)] = Some(terms);
-            open.push((own, bound, guard));
+            let bound = direct.query.bind(path, if own { &goal } else { &against })?;
+            env[usize::from(path)] = Some(bound.path);
+            open.push((own, bound));
         }
     }
     let mut formula = direct.query.goal(&env, &goal);
     let terms = &mut direct.query.script.terms;
-    for (own, bound, guard) in open.into_iter().rev() {
+    for (own, Bound { variables, guard, .. }) in open.into_iter().rev() {
         formula = if own {
             let body = terms.and2(guard, formula);
-            terms.exists(&bound, body)
+            terms.exists(&variables, body)
         } else {
             let body = terms.implies(guard, formula);
-            terms.forall(&bound, body)
+            terms.forall(&variables, body)
         };
     }
     let text = display::objective(encoder.problem, encoder.objective);
@@ -138,14 +140,14 @@ pub(crate) fn leading<'e, 'a>(
     goal: &Goal,
     narrowing: Narrowing,
 ) -> Result<Direct<'e, 'a>, Error> {
-    let mut query = Query::new(encoder, &[]).narrowed(narrowing);
-    query.explore_block(&blocks[0], goal)?;
-    let mut env = query.empty_env();
+    let relevant = encoder.relevant(&blocks[0], goal, narrowing)?;
+    let exact = relevant.is_exact();
+    let mut query = Query::new(encoder, &[], relevant);
+    let mut env = query.known();
     for &path in &blocks[0] {
         env[usize::from(path)] = Some(query.declare(path, goal)?);
     }
-    query.widen();
-    Ok(Direct { query, env })
+    Ok(Direct { query, env, exact })
 }
 
 impl Direct<'_, '_> {
@@ -155,8 +157,8 @@ impl Direct<'_, '_> {
     }
 
     /// A path of the leading block.
-    pub(crate) fn path(&self, path: PathId) -> Option<&Path> {
-        self.env[usize::from(path)].as_deref()
+    pub(crate) fn path(&self, path: PathId) -> Option<Written> {
+        self.env[usize::from(path)]
     }
 
     /// Asks a solver; `blocks` of quantifiers are in the query, the leading one as free symbols.
@@ -170,12 +172,13 @@ impl Direct<'_, '_> {
         if !oracle.check(&mut dialogue, script)? {
             return Ok(None);
         }
-        let wanted: Vec<Term> = self.env.iter().flatten().flat_map(|path| path.symbols()).collect();
+        let wanted: Vec<Term> =
+            self.env.iter().flatten().flat_map(|&path| self.query.symbols(path)).collect();
         let model = oracle.model(&mut dialogue, script, wanted)?;
         let mut known = vec![None; self.env.len()];
         for (at, path) in self.env.iter().enumerate() {
-            if let Some(path) = path {
-                let decoded = self.query.decode(PathId::from(at), path, &model);
+            if let Some(path) = *path {
+                let decoded = self.query.decode(path, &model);
                 known[at] = Some(decoded.ok_or_else(|| oracle.wrong(&dialogue, "it describes no path"))?);
             }
         }

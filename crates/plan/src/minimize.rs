@@ -16,7 +16,7 @@
 use crate::config::{Config, Error, Outcome, Seconds, Verdict};
 use crate::lasting::{conjuncts, lasting};
 use crate::solve::{SLACKS, solve_sharing};
-use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Narrowing, Query};
+use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Narrowing};
 use hyperplan_problem::{FormulaId, Node, Objective, Problem, Quantifier};
 use hyperplan_solver::Told;
 use std::ops::RangeInclusive;
@@ -298,10 +298,9 @@ fn hopeless(
     let leading = objective.leading_block();
     // Two steps, as most questions here are answered by the first.
     for slack in [SLACKS[0], None] {
-        let mut query = Query::new(&encoder, &[]).narrowed(Narrowing { slack, one_run: false });
-        let hopeless = query.is_hopeless(&leading, &goal)?;
-        if !hopeless || query.is_exact() {
-            return Ok(hopeless);
+        let relevant = encoder.relevant(&leading, &goal, Narrowing { slack, one_run: false })?;
+        if !relevant.is_hopeless() || relevant.is_exact() {
+            return Ok(relevant.is_hopeless());
         }
     }
     Ok(true)

@@ -1,17 +1,8 @@
 //! What must be settled before quantifiers are: whether paths exist at all, and whether they can go on.
 
 use crate::oracle::{Oracle, Stop};
-use hyperplan_encode::{Encoder, Goal, Query};
+use hyperplan_encode::{Encoder, Goal, Query, Relevant};
 use hyperplan_problem::{Expr, Mode, Node, Objective, PathId, Quantifier};
-
-/// The maximal runs of one quantifier, outermost first.
-pub(crate) fn blocks(objective: &Objective) -> Vec<Vec<PathId>> {
-    let paths: Vec<PathId> = objective.paths.keys().collect();
-    paths
-        .chunk_by(|&a, &b| objective.paths[a].quantifier == objective.paths[b].quantifier)
-        .map(<[PathId]>::to_vec)
-        .collect()
-}
 
 /// In bounded mode a path counts only if it can go on for ever. Where the states were not enumerated, this is known
 /// only if no state at all is a dead end.
@@ -21,10 +12,10 @@ pub(crate) fn no_dead_ends(encoder: &Encoder<'_>, oracle: &mut Oracle<'_>) -> Re
     }
     for path in encoder.objective.paths.keys() {
         // In a system with infinitely many states a path has its horizon's steps, whatever may follow.
-        if encoder.graph(path).is_some() || !encoder.system(path).is_finite() {
+        if !encoder.system(path).is_finite() {
             continue;
         }
-        let script = encoder.stuck(path);
+        let Some(script) = encoder.stuck(path) else { continue };
         let mut dialogue = oracle.open(1, false)?;
         if oracle.check(&mut dialogue, &script)? {
             return Err(Stop::Unknown(format!(
@@ -43,7 +34,7 @@ pub(crate) fn without_paths(encoder: &Encoder<'_>, oracle: &mut Oracle<'_>) -> R
         let some = match encoder.has_path(path) {
             Some(known) => known,
             None => {
-                let mut query = Query::new(encoder, &[]);
+                let mut query = Query::new(encoder, &[], Relevant::default());
                 query.declare(path, &Goal::new(&encoder.objective.formula, true))?;
                 let mut dialogue = oracle.open(1, false)?;
                 oracle.check(&mut dialogue, &query.script)?

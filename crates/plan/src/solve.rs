@@ -4,7 +4,7 @@ use crate::cegis::{Assignment, Cegis};
 use crate::config::{Config, Error, Outcome, Quantifiers, Seconds, States, Verdict, Verified};
 use crate::direct;
 use crate::oracle::{Oracle, Stop};
-use crate::prepare::{blocks, decided, no_dead_ends, without_paths};
+use crate::prepare::{decided, no_dead_ends, without_paths};
 use crate::race::race;
 use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Narrowing};
 use hyperplan_problem::{Objective, PathId, Problem, Quantifier, Strategy};
@@ -124,7 +124,7 @@ fn unknown(objective: &Objective, encoder: &Encoder<'_>, config: &Config) -> Out
     let horizons = hyperplan_horizon::horizons(objective);
     let quantifiers = match config.quantifiers {
         // A single block has no quantifiers to decide: its query has none.
-        _ if blocks(objective).len() == 1 => Quantifiers::Expand,
+        _ if objective.blocks().len() == 1 => Quantifiers::Expand,
         chosen => chosen,
     };
     Outcome {
@@ -135,7 +135,7 @@ fn unknown(objective: &Objective, encoder: &Encoder<'_>, config: &Config) -> Out
         verified: None,
         solver: Oracle::new(config).identity(),
         quantifiers,
-        because: (blocks(objective).len() == 1)
+        because: (objective.blocks().len() == 1)
             .then_some("there is one block of quantifiers, so one query decides"),
         states: States::from(encoder.states),
         iterations: 0,
@@ -153,7 +153,7 @@ fn search(
     outcome: &mut Outcome,
 ) -> Result<Option<Assignment>, Stop> {
     let objective = encoder.objective;
-    let blocks = blocks(objective);
+    let blocks = objective.blocks();
     let want = leading(objective) == Quantifier::Exists;
     let choice = outcome.quantifiers;
     if choice == Quantifiers::Keep {
@@ -176,7 +176,7 @@ fn search(
         let (found, exact) = if let Some(query) = query {
             outcome.quantifiers = Quantifiers::Expand;
             outcome.iterations += 1;
-            (query.solve(oracle, 1)?, query.query.is_exact())
+            (query.solve(oracle, 1)?, query.exact)
         } else {
             if choice == Quantifiers::Auto {
                 outcome.quantifiers = Quantifiers::Cegis;
@@ -225,7 +225,7 @@ fn reason(encoder: &Encoder<'_>, blocks: &[Vec<PathId>], swept: bool) -> &'stati
 fn narrowings(encoder: &Encoder<'_>, blocks: &[Vec<PathId>], config: &Config) -> Vec<Narrowing> {
     let auto = config.quantifiers == Quantifiers::Auto;
     let alone = blocks.len() == 1;
-    let guess = auto && !alone && !encoder.has_ties();
+    let guess = auto && !alone && !encoder.objective.has_ties();
     let guess = guess.then_some(Narrowing { slack: SLACKS[0], one_run: true });
     let steps = SLACKS.map(|slack| Narrowing { slack, one_run: auto && alone && slack.is_some() });
     guess.into_iter().chain(steps).collect()
@@ -261,14 +261,11 @@ fn leading(objective: &Objective) -> Quantifier {
 
 /// The verdict, and the witness as traces.
 fn conclude(encoder: &Encoder<'_>, found: Option<&Assignment>, outcome: &mut Outcome) {
-    let (problem, objective) = (encoder.problem, encoder.objective);
+    let objective = encoder.objective;
     let exists = leading(objective) == Quantifier::Exists;
     outcome.verdict = if found.is_some() == exists { Verdict::Realizable } else { Verdict::Unrealizable };
     outcome.witness = found.map(|known| {
-        let trace = |path: PathId| {
-            let system = &problem.systems[objective.paths[path].system];
-            known[usize::from(path)].as_ref().map(|known| known.trace(path, system))
-        };
+        let trace = |path: PathId| known[usize::from(path)].as_ref().map(|known| known.trace(path));
         for path in objective.leading_block() {
             let picked = known[usize::from(path)].as_ref().is_some_and(|k| encoder.picks_outcomes(path, k));
             if exists && picked {
@@ -325,7 +322,7 @@ fn unverified(outcome: &mut Outcome, reason: &str) {
 /// Whether the paths after the leading block can defeat the strategy, asked of the embedded solver where it can tell.
 fn defeated(encoder: &Encoder<'_>, config: &Config, strategy: &Strategy) -> Result<bool, Stop> {
     let objective = encoder.objective;
-    let blocks = blocks(objective);
+    let blocks = objective.blocks();
     let want = leading(objective) == Quantifier::Exists;
     let mut known: Assignment = vec![None; objective.paths.len()];
     for trace in &strategy.traces {

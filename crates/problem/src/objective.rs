@@ -1,6 +1,7 @@
 //! HyperLTLf objectives, resolved and typed.
 
-use crate::formula::Formula;
+use crate::expr::PathLeaf;
+use crate::formula::{Formula, Node};
 use crate::ids::{PathId, SystemId};
 use hyperplan_syntax::Span;
 use typed_index_collections::TiVec;

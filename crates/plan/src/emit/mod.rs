@@ -9,7 +9,7 @@ use crate::cegis::Cegis;
 use crate::config::{Config, Error, Quantifiers, States, Verdict};
 use crate::direct;
 use crate::oracle::{Oracle, Stop};
-use crate::prepare::{blocks, decided};
+use crate::prepare::decided;
 use crate::solve::solve;
 use dialect::Dialect;
 use hyperplan_encode::{Encoder, Goal, Limits, Narrowing};
@@ -162,7 +162,7 @@ fn settled<T>(
     objective: &Objective,
     wish: Option<hyperplan_encode::States>,
     limits: Limits,
-    stop: &dyn Fn() -> bool,
+    stop: hyperplan_encode::Stop<'_>,
     with: impl FnOnce(&Encoder<'_>) -> Result<T, Error>,
 ) -> Result<T, Error> {
     let encoder = Encoder::new(problem, objective, wish, limits, stop)?;
@@ -198,7 +198,7 @@ fn empty(encoder: &Encoder<'_>) -> Result<Option<Quantifier>, Error> {
 fn build(encoder: &Encoder<'_>, config: &EmitConfig, dialect: &Dialect) -> Result<Emitted, Error> {
     let mut notes = Vec::new();
     let objective = encoder.objective;
-    let blocks = blocks(objective);
+    let blocks = objective.blocks();
     let exists = objective.paths.first().is_none_or(|p| p.quantifier == Quantifier::Exists);
     let mut changes = Vec::new();
     let quantifiers = quantifiers(config, blocks.len(), dialect, &mut changes)?;

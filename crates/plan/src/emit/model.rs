@@ -3,7 +3,6 @@
 use super::settled;
 use crate::config::{Error, States};
 use crate::direct;
-use crate::prepare::blocks;
 use hyperplan_encode::{Encoder, Goal, Limits, Narrowing};
 use hyperplan_problem::{Objective, PathId, Problem, Quantifier, Strategy};
 use hyperplan_smt::{Model, Term};
@@ -57,7 +56,7 @@ struct Reading {
 
 fn read(encoder: &Encoder<'_>, printed: &PrintedModel) -> Result<Reading, Error> {
     let objective = encoder.objective;
-    let blocks = blocks(objective);
+    let blocks = objective.blocks();
     let exists = objective.paths.first().is_none_or(|p| p.quantifier == Quantifier::Exists);
     let goal = Goal::new(&objective.formula, exists);
     let direct = direct::leading(encoder, &blocks, &goal, Narrowing::default())?;
@@ -65,12 +64,11 @@ fn read(encoder: &Encoder<'_>, printed: &PrintedModel) -> Result<Reading, Error>
     let symbols = direct.query.script.symbols();
     let present = symbols.iter().filter(|&&symbol| printed.has(terms, symbol)).count();
     let absent = symbols.len() - present;
-    let strategy = strategy(encoder, &direct, &blocks[0], &symbols, printed);
+    let strategy = strategy(&direct, &blocks[0], &symbols, printed);
     Ok(Reading { present, absent, strategy })
 }
 
 fn strategy(
-    encoder: &Encoder<'_>,
     direct: &direct::Direct<'_, '_>,
     block: &[PathId],
     symbols: &[Term],
@@ -85,8 +83,7 @@ fn strategy(
     }
     let trace = |&path: &PathId| {
         let declared = direct.path(path)?;
-        let known = direct.query.decode(path, declared, &model)?;
-        Some(known.trace(path, encoder.system(path)))
+        Some(direct.query.decode(declared, &model)?.trace(path))
     };
     let traces: Option<Vec<_>> = block.iter().map(trace).collect();
     let wrong = || {

@@ -1,9 +1,10 @@
 //! What is suspicious about systems, found by looking at every reachable state.
 
 use super::Lints;
-use hyperplan_encode::{Findings, Graph, StateIx, inspect};
+
 use hyperplan_problem::{Problem, System, display};
 use hyperplan_solver::Deadline;
+use hyperplan_space::{Findings, Graph, StateIx, inspect};
 use hyperplan_syntax::Diagnostic;
 
 /// Systems with more states are not inspected.

@@ -7,11 +7,11 @@
 use super::question::{Asker, free};
 use super::rewrite::conjuncts;
 use super::total::{JUST_STUCK, enabled, is, total};
-use hyperplan_encode::Graph;
 use hyperplan_problem::{
     Comparison, Expr, Formula, FormulaId, Interval, Leaf, Mode, Node, Objective, PathId, PathLeaf, Problem,
     Quantifier, State, System, Type, Value, VarId, display,
 };
+use hyperplan_space::Graph;
 use hyperplan_syntax::Diagnostic;
 use hyperplan_syntax::ast::UnaryOp;
 use std::collections::BTreeSet;
@@ -105,11 +105,11 @@ fn ask(asker: &mut Asker<'_>, tie: &Tie) -> Option<Diagnostic> {
     let name = &objective.paths[tie.follower].name;
     let what = format!("path {name} can get stuck");
     let answer = asker.example(&problem, &question, span, &what)??;
-    let trace = answer[usize::from(tie.follower)].as_ref()?.trace(tie.follower, &problem.systems[id]);
+    let stuck_path = answer[usize::from(tie.follower)].as_ref()?;
     let just = |state: &State| state[usize::from(stuck)] == Value::Int(JUST_STUCK);
-    let after = trace.states.iter().position(just)?;
-    let before: State = trace.states[after.checked_sub(1)?][..usize::from(stuck)].into();
-    let action = &problem.actions[*trace.actions.get(after - 1)?];
+    let after = stuck_path.states.iter().position(just)?;
+    let before: State = stuck_path.states[after.checked_sub(1)?][..usize::from(stuck)].into();
+    let action = &problem.actions[*stuck_path.actions.get(after - 1)?];
     let leader = &objective.paths[tie.leader].name;
     let place = display::state(original, &before);
     let message =

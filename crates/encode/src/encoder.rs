@@ -1,0 +1,299 @@
+//! How an objective is going to be written, chosen once.
+
+use crate::enumerated::Enumerated;
+use crate::variables::{ByVariable, Numbers};
+use crate::writing::Writer;
+use hyperplan_problem::{Objective, PathId, Problem, System, Trace};
+use hyperplan_relevance::{
+    self as relevance, Arena, Goal, Instance, Known, Limits, Narrowing, Relevant, Stop, Task,
+};
+use hyperplan_smt::Script;
+use hyperplan_space::{Graph, Graphs};
+use std::sync::Arc;
+use typed_index_collections::TiVec;
+
+/// How states are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum States {
+    /// A Boolean for each state that can matter at a time.
+    Onehot,
+    /// A bit-vector for each variable.
+    Bitvec,
+    /// An integer for each variable, a real for each that is one.
+    Int,
+    /// A value of a datatype, one for each state of the system, at each time.
+    Enum,
+    /// A real for each variable.
+    Real,
+}
+
+impl States {
+    /// Whether states are written one by one.
+    #[must_use]
+    pub fn is_enumerated(self) -> bool {
+        matches!(self, States::Onehot | States::Enum)
+    }
+
+    /// Whether variables are integers or reals.
+    #[must_use]
+    pub fn is_arithmetic(self) -> bool {
+        matches!(self, States::Int | States::Real)
+    }
+}
+
+/// Why an objective cannot be encoded as asked.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Error {
+    /// A path is too long.
+    #[error("path {path} would have {steps} steps; more than {limit} are not supported")]
+    HorizonTooLong {
+        /// The path variable.
+        path: String,
+        /// Its horizon.
+        steps: u64,
+        /// The limit.
+        limit: u64,
+    },
+    /// A budget is exceeded.
+    #[error("{what}: more than {limit}")]
+    TooLarge {
+        /// What there is too much of.
+        what: String,
+        /// The limit.
+        limit: usize,
+    },
+    /// A universally quantified path has too many cases to be expanded.
+    #[error("path {path} has more than {limit} cases; use --quantifiers cegis")]
+    TooManyCases {
+        /// The path variable.
+        path: String,
+        /// The limit.
+        limit: usize,
+    },
+    /// The caller asked to stop.
+    #[error("interrupted")]
+    Interrupted,
+    /// States are to be enumerated, but there are too many.
+    #[error("system {system} has too many states to enumerate; use --states bitvec")]
+    NotEnumerable {
+        /// The system.
+        system: String,
+    },
+    /// A system has integers or reals without bounds.
+    #[error("system {system} has variables without bounds, which takes --states int or real")]
+    Unbounded {
+        /// The system.
+        system: String,
+    },
+    /// A system is about integers in a way that reals cannot express.
+    #[error("{what}, which reals cannot express; use --states int")]
+    NotReal {
+        /// What it has.
+        what: String,
+    },
+}
+
+impl From<relevance::Error> for Error {
+    fn from(error: relevance::Error) -> Self {
+        match error {
+            relevance::Error::TooLarge { what, limit } => Error::TooLarge { what, limit },
+            relevance::Error::TooManyCases { path, limit } => Error::TooManyCases { path, limit },
+            relevance::Error::Interrupted => Error::Interrupted,
+        }
+    }
+}
+
+/// What does not depend on the query.
+pub struct Encoder<'a> {
+    /// The problem.
+    pub problem: &'a Problem,
+    /// The objective.
+    pub objective: &'a Objective,
+    /// How states are written.
+    pub states: States,
+    pub(crate) task: Task<'a>,
+    /// The states of each path's system, where they were enumerated.
+    graphs: TiVec<PathId, Option<Arc<Graph>>>,
+    pub(crate) writer: Box<dyn Writer + 'a>,
+}
+
+impl<'a> Encoder<'a> {
+    /// Prepares an objective. Without a wish, states are enumerated where the budget allows.
+    ///
+    /// # Errors
+    /// [`Error::HorizonTooLong`], and [`Error::NotEnumerable`] where enumeration is asked for and impossible. What
+    /// is built later fails with [`Error::Interrupted`] soon after `stop` says so.
+    pub fn new(
+        problem: &'a Problem,
+        objective: &'a Objective,
+        wish: Option<States>,
+        limits: Limits,
+        stop: Stop<'a>,
+    ) -> Result<Self, Error> {
+        Encoder::sharing(problem, objective, wish, limits, stop, &Graphs::default())
+    }
+
+    /// As [`Encoder::new`], with what was enumerated before.
+    ///
+    /// # Errors
+    /// Those of [`Encoder::new`].
+    pub fn sharing(
+        problem: &'a Problem,
+        objective: &'a Objective,
+        wish: Option<States>,
+        limits: Limits,
+        stop: Stop<'a>,
+        graphs: &Graphs,
+    ) -> Result<Self, Error> {
+        let horizons = horizons(objective, &limits)?;
+        let task = Task { problem, objective, horizons, limits, stop };
+        let graphs = explore(&task, wish, graphs)?;
+        let finite = objective.paths.iter().all(|path| problem.systems[path.system].is_finite());
+        let all: Option<TiVec<PathId, Arc<Graph>>> = graphs.iter().cloned().collect();
+        let states = wish.unwrap_or(match (finite, &all) {
+            (false, _) => States::Int,
+            (true, Some(_)) => States::Onehot,
+            (true, None) => States::Bitvec,
+        });
+        let by_variable = |numbers| -> Result<Box<dyn Writer + 'a>, Error> {
+            Ok(Box::new(ByVariable::new(task.clone(), graphs.clone(), numbers)?))
+        };
+        let writer = match (states, all) {
+            (States::Bitvec, _) => by_variable(Numbers::Bits)?,
+            (States::Int, _) => by_variable(Numbers::Integers)?,
+            (States::Real, _) => by_variable(Numbers::Reals)?,
+            (States::Onehot | States::Enum, Some(graphs)) => {
+                let arena = Arena { task: task.clone(), graphs };
+                Box::new(Enumerated::new(arena, states == States::Enum))
+            }
+            (States::Onehot | States::Enum, None) => {
+                let paths = graphs.iter_enumerated().filter(|(_, graph)| graph.is_none());
+                let system = paths.map(|(path, _)| task.system(path).name.clone()).next();
+                return Err(Error::NotEnumerable { system: system.unwrap_or_default() });
+            }
+        };
+        Ok(Encoder { problem, objective, states, task, graphs, writer })
+    }
+
+    /// The number of steps of a path.
+    #[must_use]
+    pub fn horizon(&self, path: PathId) -> u32 {
+        self.task.horizon(path)
+    }
+
+    /// The system of a path.
+    #[must_use]
+    pub fn system(&self, path: PathId) -> &'a System {
+        self.task.system(path)
+    }
+
+    /// Whether a path's system has a path that is long enough (for ever, in bounded mode); `None` where its states
+    /// were not enumerated.
+    #[must_use]
+    pub fn has_path(&self, path: PathId) -> Option<bool> {
+        let graph = self.graphs[path].as_ref()?;
+        Some(graph.initial.iter().any(|&state| self.task.lasts(graph, state, 0)))
+    }
+
+    /// For a system that was not enumerated, in bounded mode: a script that is unsatisfiable only if no state is a
+    /// dead end.
+    #[must_use]
+    pub fn stuck(&self, path: PathId) -> Option<Script> {
+        self.writer.stuck(path)
+    }
+
+    /// What can matter of the leading block for its player to reach the goal.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] where too much can matter.
+    pub fn relevant(&self, block: &[PathId], goal: &Goal, narrowing: Narrowing) -> Result<Relevant, Error> {
+        self.writer.relevant(block, goal, narrowing)
+    }
+
+    /// The instance that a counterexample stands for, given the paths before it. Under these the instance is exactly
+    /// the counterexample.
+    #[must_use]
+    pub fn generalize(&self, path: PathId, counterexample: &Known, before: &[Option<Known>]) -> Instance {
+        self.writer.generalize(path, counterexample, before)
+    }
+
+    /// The path that an instance describes once the paths that it refers to are known; `None` where it describes
+    /// none: then it asks for nothing.
+    #[must_use]
+    pub fn realize(&self, path: PathId, instance: &Instance, known: &[Option<Known>]) -> Option<Known> {
+        self.writer.realize(path, instance, known)
+    }
+
+    /// A trace as a known path, cut to its horizon; `None` where it is no path of the system, or too short.
+    #[must_use]
+    pub fn known(&self, trace: &Trace) -> Option<Known> {
+        self.writer.known(trace)
+    }
+
+    /// The finitely many instances that together cover every choice of a path with which its player can
+    /// reach the goal.
+    ///
+    /// # Errors
+    /// [`Error::TooManyCases`] beyond the limit, and where states were not enumerated.
+    pub fn cases(&self, path: PathId, goal: &Goal) -> Result<Vec<Instance>, Error> {
+        self.writer.cases(path, goal)
+    }
+
+    /// Whether so many copies of the formula may be made on account of a path.
+    ///
+    /// # Errors
+    /// [`Error::TooManyCases`] beyond the limit.
+    pub fn allow_cases(&self, path: PathId, copies: usize) -> Result<(), Error> {
+        Ok(self.task.allow_cases(path, copies)?)
+    }
+
+    /// Whether a path took an action that could have had another outcome.
+    #[must_use]
+    pub fn picks_outcomes(&self, path: PathId, known: &Known) -> bool {
+        self.writer.picks_outcomes(path, known)
+    }
+}
+
+/// The states of each path's system, where they can be enumerated.
+fn explore(
+    task: &Task<'_>,
+    wish: Option<States>,
+    graphs: &Graphs,
+) -> Result<TiVec<PathId, Option<Arc<Graph>>>, Error> {
+    let mut all: TiVec<PathId, Option<Arc<Graph>>> = TiVec::new();
+    for path in task.objective.paths.keys() {
+        if let Some(same) = all.keys().find(|&other| task.same_system(other, path)) {
+            all.push(all[same].clone());
+            continue;
+        }
+        let system = task.system(path);
+        if !system.is_finite() && wish.is_some_and(|wish| !wish.is_arithmetic()) {
+            return Err(Error::Unbounded { system: system.name.clone() });
+        }
+        let graph = graphs.explore(system, task.limits.states);
+        let limit = task.limits.constructors;
+        if wish == Some(States::Enum) && graph.as_ref().is_some_and(|g| g.len() > limit) {
+            let what = format!("the states of system {}, each a constructor of a datatype", system.name);
+            return Err(Error::TooLarge { what, limit });
+        }
+        all.push(graph);
+    }
+    Ok(all)
+}
+
+/// The number of steps of each path; a path that is not read has none.
+fn horizons(objective: &Objective, limits: &Limits) -> Result<TiVec<PathId, u32>, Error> {
+    hyperplan_horizon::horizons(objective)
+        .iter_enumerated()
+        .map(|(path, horizon)| {
+            let steps = horizon.steps.unwrap_or(0);
+            u32::try_from(steps).ok().filter(|_| steps <= limits.horizon).ok_or_else(|| {
+                Error::HorizonTooLong {
+                    path: objective.paths[path].name.clone(),
+                    steps,
+                    limit: limits.horizon,
+                }
+            })
+        })
+        .collect()
+}

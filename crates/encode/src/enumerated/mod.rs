@@ -1,0 +1,413 @@
+//! States written one by one (`--states onehot` and `enum`): what can matter of a path is found first, and only that is
+//! written.
+
+mod choice;
+mod instance;
+mod path;
+mod run;
+mod sweep;
+
+use crate::Error;
+use crate::names::{Copies, Names};
+use crate::value::{Val, merge};
+use crate::writing::{Bound, Env, Paths, Writer, Writing, Written};
+use choice::Codings;
+use hyperplan_problem::{
+    ActionId, Expr, FormulaId, Leaf, PathId, PathLeaf, State, System, SystemId, Trace, Value,
+};
+use hyperplan_relevance::{
+    Arena, Game, Goal, Instance, Known, Layers, Move, Narrowing, Numbering, Relevance, Relevant, Start,
+    cases, generalize, leading,
+};
+use hyperplan_smt::{Model, Script, Term, Terms};
+use hyperplan_space::{Graph, Letter, Run, StateIx, eval, eval_in};
+use instance::{Building, Instances};
+use path::{Builder, EnumeratedPath};
+use run::is_truth;
+use rustc_hash::FxHashMap;
+use std::sync::Arc;
+use sweep::{Sweep, sweep};
+use typed_index_collections::TiVec;
+
+/// States written one by one.
+pub(crate) struct Enumerated<'a> {
+    arena: Arena<'a>,
+    /// Whether as values of a datatype; else a Boolean each.
+    datatypes: bool,
+}
+
+impl<'a> Enumerated<'a> {
+    pub(crate) fn new(arena: Arena<'a>, datatypes: bool) -> Self {
+        Enumerated { arena, datatypes }
+    }
+
+    /// How the states and letters of each system are written.
+    fn codings(&self, terms: &mut Terms) -> TiVec<SystemId, Codings> {
+        let task = &self.arena.task;
+        let coding = |(id, system): (SystemId, &'a System)| {
+            let path = task.objective.paths.iter_enumerated().find(|(_, path)| path.system == id);
+            match path {
+                Some((path, _)) if self.datatypes => {
+                    let names = Names { problem: task.problem, system, path: system.name.clone() };
+                    Codings::enumerations(terms, &names, &self.arena.graphs[path])
+                }
+                _ => Codings::ONEHOT,
+            }
+        };
+        task.problem.systems.iter_enumerated().map(coding).collect()
+    }
+
+    /// A known path through its graph; `None` where it is none.
+    fn run(&self, path: PathId, known: &Known) -> Option<Run> {
+        let graph = &self.arena.graphs[path];
+        let mut at = graph.initial_state(&known.states[0])?;
+        let (start, mut letters) = (at, Vec::with_capacity(known.actions.len()));
+        for (&action, &number) in known.actions.iter().zip(&known.numbers) {
+            let (letter, next) = exactly(graph, at, action, number)?;
+            letters.push(letter);
+            at = next;
+        }
+        Run::replay(graph, start, letters)
+    }
+
+    fn known_run(&self, path: PathId, run: &Run) -> Known {
+        let Trace { states, actions, .. } = run.trace(path, self.arena.task.system(path));
+        let number = |&letter: &Letter| run.graph.letters[letter as usize].1;
+        Known { states, actions, numbers: run.letters.iter().map(number).collect() }
+    }
+}
+
+/// The outcome of an action with this number, where there are so many.
+fn exactly(graph: &Graph, state: StateIx, action: ActionId, number: u32) -> Option<(Letter, StateIx)> {
+    graph.outcome(state, action, number).filter(|(letter, _)| graph.letters[*letter as usize].1 == number)
+}
+
+/// Outcomes are numbered as in the graph.
+struct AsInGraph;
+
+impl Numbering for AsInGraph {
+    fn outcomes(&self, _: ActionId, most: u32) -> u32 {
+        most
+    }
+
+    fn number(&self, graph: &Graph, _: StateIx, letter: Letter, _: StateIx) -> u32 {
+        graph.letters[letter as usize].1
+    }
+
+    fn shares_steps(&self) -> bool {
+        true
+    }
+}
+
+impl Writer for Enumerated<'_> {
+    fn relevant(&self, block: &[PathId], goal: &Goal, narrowing: Narrowing) -> Result<Relevant, Error> {
+        Ok(leading(&self.arena, block, goal, narrowing)?)
+    }
+
+    fn begin<'e>(
+        &'e self,
+        known: &[Option<Known>],
+        found: Relevant,
+        copies: &Arc<Copies>,
+        terms: &mut Terms,
+    ) -> Box<dyn Writing + 'e> {
+        let run = |path: PathId| self.run(path, known.get(usize::from(path))?.as_ref()?);
+        let fixed = self.arena.graphs.keys().map(run).collect();
+        Box::new(EnumeratedQuery {
+            writer: self,
+            relevance: Relevance::new(&self.arena, fixed, found),
+            codings: self.codings(terms),
+            instances: Instances::default(),
+            truth: FxHashMap::default(),
+            paths: Paths::new(),
+            copies: copies.clone(),
+        })
+    }
+
+    fn known(&self, trace: &Trace) -> Option<Known> {
+        let steps = self.arena.task.horizon(trace.path) as usize;
+        let run = Run::of_trace(&self.arena.graphs[trace.path], trace, steps)?;
+        Some(self.known_run(trace.path, &run))
+    }
+
+    fn cases(&self, path: PathId, goal: &Goal) -> Result<Vec<Instance>, Error> {
+        Ok(cases(&self.arena.task, &self.arena.graphs[path], path, goal, &AsInGraph)?)
+    }
+
+    fn generalize(&self, path: PathId, counterexample: &Known, before: &[Option<Known>]) -> Instance {
+        let graphs = &self.arena.graphs;
+        let shares = |other: PathId| Arc::ptr_eq(&graphs[other], &graphs[path]);
+        generalize(self.arena.task.objective, path, counterexample, before, &shares)
+    }
+
+    fn realize(&self, path: PathId, instance: &Instance, known: &[Option<Known>]) -> Option<Known> {
+        let (task, graph) = (&self.arena.task, &self.arena.graphs[path]);
+        let other = |p: PathId| known[usize::from(p)].as_ref();
+        let start = match &instance.start {
+            Start::State(state) => state,
+            Start::Same(p) => &other(*p)?.states[0],
+        };
+        let start = graph.initial_state(start)?;
+        let (mut at, mut letters) = (start, Vec::with_capacity(instance.moves.len()));
+        for (time, &movement) in instance.moves.iter().enumerate() {
+            let action = movement.action(|p| other(p)?.actions.get(time).copied())?;
+            let (letter, next) = match movement {
+                Move::Same(p) => exactly(graph, at, action, *other(p)?.numbers.get(time)?)?,
+                Move::SameAction(_, number) | Move::Act(_, number) => graph.outcome(at, action, number)?,
+            };
+            letters.push(letter);
+            at = next;
+        }
+        let whole = letters.len() == task.horizon(path) as usize;
+        if !whole || !task.lasts(graph, at, letters.len() as u32) {
+            return None;
+        }
+        Some(self.known_run(path, &Run::replay(graph, start, letters)?))
+    }
+
+    fn picks_outcomes(&self, path: PathId, known: &Known) -> bool {
+        self.run(path, known).is_some_and(|run| {
+            let mut steps = run.states.iter().zip(&run.actions);
+            steps.any(|(&state, &action)| run.graph.of_action(state, action).count() > 1)
+        })
+    }
+
+    fn stuck(&self, _: PathId) -> Option<Script> {
+        None
+    }
+}
+
+/// Paths of one query whose states are written one by one.
+pub(crate) struct EnumeratedQuery<'e, 'a> {
+    writer: &'e Enumerated<'a>,
+    relevance: Relevance<'e, 'a>,
+    codings: TiVec<SystemId, Codings>,
+    instances: Instances,
+    /// Whether each state satisfies an atom that reads one path's state, by atom.
+    truth: FxHashMap<FormulaId, Vec<Option<bool>>>,
+    paths: Paths<EnumeratedPath>,
+    copies: Arc<Copies>,
+}
+
+impl<'e, 'a> EnumeratedQuery<'e, 'a> {
+    fn builder<'b>(&'b self, path: PathId, names: &'b Names<'a>, layers: &'b Layers) -> Builder<'b, 'a> {
+        let arena = &self.writer.arena;
+        let codings = &self.codings[arena.task.objective.paths[path].system];
+        Builder { task: &arena.task, path, names, graph: &arena.graphs[path], layers, codings }
+    }
+
+    fn names(&self, path: PathId) -> Names<'a> {
+        self.copies.next(&self.writer.arena.task, path)
+    }
+
+    fn system(&self, path: &EnumeratedPath) -> &'a System {
+        self.writer.arena.task.system(path.path)
+    }
+
+    /// The game with these paths.
+    fn game(&self, is: impl Fn(&Game) -> bool) -> Option<Arc<Game>> {
+        self.relevance.found().game().filter(|game| is(game)).cloned()
+    }
+
+    /// An expression over the path's state, by the value that it has in each state.
+    fn by_state(
+        &self,
+        terms: &mut Terms,
+        written: Written,
+        time: u32,
+        truth: bool,
+        value: impl Fn(StateIx) -> i64,
+    ) -> Val {
+        let layer = &self.paths[written].layers[time as usize];
+        if truth {
+            return Val::Bool(layer.any(terms, |state| value(state) != 0));
+        }
+        let cases = layer.states.iter().zip(&layer.terms).map(|(&state, &here)| (value(state), here));
+        merge(terms, cases)
+    }
+}
+
+impl Writing for EnumeratedQuery<'_, '_> {
+    fn declare(&mut self, script: &mut Script, path: PathId, goal: &Goal) -> Result<Written, Error> {
+        let names = self.names(path);
+        let layers = self.relevance.declare(path, goal)?;
+        let declared = self.builder(path, &names, &layers).declare(script)?;
+        if let Some(game) = self.game(|game| game.paths[0] == path) {
+            // What no winning run of the path does.
+            for time in 0..declared.steps.len() {
+                for losing in game.closed(time as u32) {
+                    script.clause(&declared.avoids(&losing, time, None));
+                }
+            }
+        }
+        Ok(self.paths.push(declared))
+    }
+
+    fn bind(&mut self, terms: &mut Terms, path: PathId, goal: &Goal) -> Result<Bound, Error> {
+        let names = self.names(path);
+        let layers = self.relevance.layers(path, goal)?;
+        let (path, variables, guard) = self.builder(path, &names, &layers).bind(terms)?;
+        Ok(Bound { path: self.paths.push(path), variables, guard })
+    }
+
+    fn fix(&mut self, _: &mut Terms, path: PathId, known: &Known) -> Option<Written> {
+        let run = self.writer.run(path, known)?;
+        Some(self.paths.push(EnumeratedPath::fix(path, &run)))
+    }
+
+    fn instantiate(
+        &mut self,
+        script: &mut Script,
+        path: PathId,
+        instance: &Instance,
+        env: &Env,
+        goal: &Goal,
+    ) -> Result<(Written, Term), Error> {
+        let layers = self.relevance.layers(path, goal)?;
+        let graph = &self.writer.arena.graphs[path];
+        let names = self.names(path);
+        let others = self.paths.all_of(env);
+        let mut building = Building { script, path, names: &names, graph, layers: &layers, env: &others };
+        let (path, guard) = self.instances.build(&mut building, instance);
+        Ok((self.paths.push(path), guard))
+    }
+
+    fn restrict(
+        &mut self,
+        script: &mut Script,
+        written: Written,
+        goal: &Goal,
+        beside: &[(PathId, Known)],
+    ) -> Result<(), Error> {
+        let path = &self.paths[written];
+        if !self.writer.arena.task.limits.prune {
+            return Ok(());
+        }
+        let runs = beside.iter().filter_map(|(other, known)| Some((*other, self.writer.run(*other, known)?)));
+        let layers = self.relevance.beside(path.path, goal, runs)?;
+        for (time, layer) in path.layers.iter().enumerate() {
+            for (&state, &term) in layer.states.iter().zip(&layer.terms) {
+                if !layers.contains(time, state) {
+                    script.assert(!term);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn sweep(&mut self, script: &mut Script, path: PathId, env: &Env, goal: &Goal) -> Result<bool, Error> {
+        let names = self.names(path);
+        let game = self.game(|game| game.paths[1] == path && game.goal == *goal);
+        let leading = game.as_ref().and_then(|game| env[usize::from(game.paths[0])]);
+        let leading = leading.map(|leading| self.paths[leading].clone());
+        let game = game.as_deref().zip(leading.as_ref());
+        let layers = match game {
+            Some((game, _)) => Arc::new(game.other_layers()),
+            None => self.relevance.layers(path, goal)?,
+        };
+        let arena = &self.writer.arena;
+        let (task, graph) = (&arena.task, &*arena.graphs[path]);
+        let question = Sweep { task, graph, names: &names, path, layers: &layers, goal, env, game };
+        Ok(sweep(&question, self, script).is_some())
+    }
+
+    fn symbols(&self, written: Written) -> Vec<Term> {
+        self.paths[written].symbols()
+    }
+
+    fn decode(&self, written: Written, model: &Model) -> Option<Known> {
+        let path = &self.paths[written];
+        Some(self.writer.known_run(path.path, &path.decode(model)?))
+    }
+
+    fn starts(&self, _: &mut Terms, written: Written, state: &State) -> Vec<Term> {
+        let path = &self.paths[written];
+        vec![path.graph.initial_state(state).map_or(Term::FALSE, |state| path.layers[0].is(state))]
+    }
+
+    fn took(&self, written: Written, step: usize, action: ActionId) -> Term {
+        self.paths[written].steps[step].took(action)
+    }
+
+    fn same_state(&self, terms: &mut Terms, p: Written, q: Written, time: u32) -> Term {
+        let [p, q] = [p, q].map(|path| &self.paths[path].layers[time as usize]);
+        if let ([state], [Term::TRUE]) = (&p.states[..], &p.terms[..]) {
+            return q.is(*state);
+        }
+        let parts: Vec<Term> =
+            p.states.iter().zip(&p.terms).map(|(&s, &here)| terms.implies(here, q.is(s))).collect();
+        terms.and(&parts)
+    }
+
+    fn enabled(&mut self, terms: &mut Terms, path: Written, time: u32, action: ActionId) -> Term {
+        let path = &self.paths[path];
+        path.layers[time as usize].any(terms, |state| path.graph.enables(state, action))
+    }
+
+    fn halted(&mut self, terms: &mut Terms, path: Written, time: u32) -> Term {
+        let path = &self.paths[path];
+        path.layers[time as usize].any(terms, |state| path.graph.halts(state))
+    }
+
+    fn leaf(&self, terms: &mut Terms, written: Written, time: u32, leaf: Leaf) -> Val {
+        let path = &self.paths[written];
+        let system = self.system(path);
+        let value = |state| eval_in(system, &Expr::Leaf(leaf), path.graph.codes(state));
+        self.by_state(terms, written, time, is_truth(system, leaf), value)
+    }
+
+    fn whole(&self, terms: &mut Terms, written: Written, time: u32, expr: &Expr<PathLeaf>) -> Option<Val> {
+        let path = &self.paths[written];
+        let system = self.system(path);
+        let value = |state| value(system, &path.graph, expr, state);
+        Some(self.by_state(terms, written, time, is_truth_value(system, expr), value))
+    }
+
+    fn atom(
+        &mut self,
+        terms: &mut Terms,
+        written: Written,
+        time: u32,
+        (id, expr): (FormulaId, &Expr<PathLeaf>),
+    ) -> Option<Term> {
+        let path = &self.paths[written];
+        let system = self.system(path);
+        let truth = self.truth.entry(id).or_insert_with(|| vec![None; path.graph.len()]);
+        Some(path.layers[time as usize].any(terms, |state| {
+            *truth[state as usize].get_or_insert_with(|| value(system, &path.graph, expr, state) != 0)
+        }))
+    }
+}
+
+/// The value in a state of an expression that [reads nothing else](crate::atom::only_path).
+fn value(system: &System, graph: &Graph, expr: &Expr<PathLeaf>, state: StateIx) -> i64 {
+    eval(expr, &mut |leaf| match *leaf {
+        PathLeaf::State(_, leaf) => eval_in(system, &Expr::Leaf(leaf), graph.codes(state)),
+        PathLeaf::Enabled(_, action) => i64::from(graph.enables(state, action)),
+        PathLeaf::Halted(_) => i64::from(graph.halts(state)),
+        PathLeaf::Took(..) | PathLeaf::SameAction(..) | PathLeaf::SameState(..) => 0,
+    })
+}
+
+/// Whether an expression over one path's state is a truth value rather than a number.
+fn is_truth_value(system: &System, expr: &Expr<PathLeaf>) -> bool {
+    match expr {
+        Expr::Const(Value::Bool(_))
+        | Expr::Not(_)
+        | Expr::And(_)
+        | Expr::Or(_)
+        | Expr::Iff(..)
+        | Expr::Compare(..)
+        | Expr::Member(..) => true,
+        Expr::Const(_)
+        | Expr::Add(_)
+        | Expr::Mul(..)
+        | Expr::Scale(..)
+        | Expr::ToReal(_)
+        | Expr::Div(..)
+        | Expr::Mod(..) => false,
+        Expr::If(_, a, _) => is_truth_value(system, a),
+        Expr::Leaf(PathLeaf::State(_, leaf)) => is_truth(system, *leaf),
+        Expr::Leaf(_) => true,
+    }
+}

@@ -1,0 +1,321 @@
+//! States written by variable (`--states bitvec`, `int` and `real`): nothing is excluded ahead, whatever cannot matter
+//! is left to the solver.
+
+mod path;
+mod real;
+mod step;
+
+use crate::Error;
+use crate::names::{Copies, Names};
+use crate::value::{Leaves, Val, is, same};
+use crate::writing::{Bound, Env, Paths, Writer, Writing, Written};
+use hyperplan_problem::{ActionId, Expr, FormulaId, Leaf, Mode, PathId, PathLeaf, State, System, Trace};
+use hyperplan_relevance::{
+    Goal, Instance, Known, Move, Narrowing, Numbering, Relevant, Start, Task, cases, generalize,
+};
+use hyperplan_smt::{Model, Script, Term, Terms};
+use hyperplan_space::{Commands, Graph, LIVE, Letter, MAX_COMMANDS, StateIx, code, holds_in};
+pub(crate) use path::Numbers;
+use path::{Builder, VariablePath, stuck_state};
+use rustc_hash::FxHashMap;
+use std::sync::Arc;
+use step::{InState, enabled, halted};
+use typed_index_collections::TiVec;
+
+/// States written by variable.
+pub(crate) struct ByVariable<'a> {
+    task: Task<'a>,
+    numbers: Numbers,
+    /// The states of each path's system, where they were enumerated.
+    graphs: TiVec<PathId, Option<Arc<Graph>>>,
+    rules: TiVec<PathId, Arc<Rules>>,
+}
+
+/// What a path of a system has to keep to.
+struct Rules {
+    commands: Commands,
+    /// The live states, sorted, where the system was enumerated and some are not live: a path has to end in one.
+    live: Option<Vec<Box<[i64]>>>,
+}
+
+impl<'a> ByVariable<'a> {
+    /// # Errors
+    /// [`Error::TooLarge`] where there are too many commands, [`Error::NotReal`].
+    pub(crate) fn new(
+        task: Task<'a>,
+        graphs: TiVec<PathId, Option<Arc<Graph>>>,
+        numbers: Numbers,
+    ) -> Result<Self, Error> {
+        if numbers == Numbers::Reals {
+            real::demand(task.problem, task.objective)?;
+        }
+        let mut rules: TiVec<PathId, Arc<Rules>> = TiVec::new();
+        for (path, graph) in graphs.iter_enumerated() {
+            let same = rules.iter_enumerated().find(|(other, _)| task.same_system(*other, path));
+            let own = match same {
+                Some((_, same)) => same.clone(),
+                None => Arc::new(Rules::new(&task, path, graph.as_deref(), numbers)?),
+            };
+            rules.push(own);
+        }
+        Ok(ByVariable { task, numbers, graphs, rules })
+    }
+
+    fn builder<'b>(&'b self, path: PathId, names: &'b Names<'b>) -> Builder<'b> {
+        let Rules { commands, live } = &*self.rules[path];
+        let (numbers, horizon) = (self.numbers, self.task.horizon(path));
+        Builder { path, names, commands, numbers, live: live.as_deref(), horizon }
+    }
+}
+
+impl Rules {
+    fn new(task: &Task<'_>, path: PathId, graph: Option<&Graph>, numbers: Numbers) -> Result<Rules, Error> {
+        let system = task.system(path);
+        let commands = Commands::new(system, &|ty| numbers.leaves_open(ty)).map_err(|_| Error::TooLarge {
+            what: format!("the ways to take a step (clauses and choices) of system {}", system.name),
+            limit: MAX_COMMANDS,
+        })?;
+        let mortal = graph.filter(|graph| task.objective.mode == Mode::Bounded && !graph.all_live());
+        let live = mortal.map(|graph| {
+            let states = (0..graph.len() as StateIx).filter(|&s| graph.rank[s as usize] == LIVE);
+            let mut live: Vec<Box<[i64]>> = states.map(|state| graph.codes(state).into()).collect();
+            live.sort_unstable();
+            live
+        });
+        Ok(Rules { commands, live })
+    }
+
+    /// Whether a path can end in a state.
+    fn lasts(&self, state: &State) -> bool {
+        self.live.as_ref().is_none_or(|live| {
+            let codes: Box<[i64]> = state.iter().map(|&value| code(value)).collect();
+            live.binary_search(&codes).is_ok()
+        })
+    }
+}
+
+/// Outcomes are numbered by the commands of their action.
+struct ByCommand<'a> {
+    commands: &'a Commands,
+    system: &'a System,
+}
+
+impl Numbering for ByCommand<'_> {
+    fn outcomes(&self, action: ActionId, most: u32) -> u32 {
+        if most > 1 { self.commands.of_action(action).count() as u32 } else { most }
+    }
+
+    fn number(&self, graph: &Graph, from: StateIx, letter: Letter, to: StateIx) -> u32 {
+        let action = graph.letters[letter as usize].0;
+        let [from, to] = [from, to].map(|state| graph.state(self.system, state));
+        self.commands.number_of(self.system, &from, action, &to).unwrap_or(0)
+    }
+
+    fn shares_steps(&self) -> bool {
+        false
+    }
+}
+
+impl Writer for ByVariable<'_> {
+    fn relevant(&self, _: &[PathId], _: &Goal, _: Narrowing) -> Result<Relevant, Error> {
+        Ok(Relevant::default())
+    }
+
+    fn begin<'e>(
+        &'e self,
+        _: &[Option<Known>],
+        _: Relevant,
+        copies: &Arc<Copies>,
+        _: &mut Terms,
+    ) -> Box<dyn Writing + 'e> {
+        let (paths, enabled) = (Paths::new(), FxHashMap::default());
+        Box::new(VariableQuery { writer: self, paths, enabled, copies: copies.clone() })
+    }
+
+    fn known(&self, trace: &Trace) -> Option<Known> {
+        let (system, commands) = (self.task.system(trace.path), &self.rules[trace.path].commands);
+        let steps = self.task.horizon(trace.path) as usize;
+        let (actions, states) = (trace.actions.get(..steps)?, trace.states.get(..=steps)?);
+        let step = |at: usize| commands.number_of(system, &states[at], actions[at], &states[at + 1]);
+        let numbers: Option<Vec<u32>> = (0..steps).map(step).collect();
+        Some(Known { states: states.to_vec(), actions: actions.to_vec(), numbers: numbers? })
+    }
+
+    fn cases(&self, path: PathId, goal: &Goal) -> Result<Vec<Instance>, Error> {
+        let (system, commands) = (self.task.system(path), &self.rules[path].commands);
+        match &self.graphs[path] {
+            Some(graph) if commands.inputs.is_empty() => {
+                Ok(cases(&self.task, graph, path, goal, &ByCommand { commands, system })?)
+            }
+            _ => Ok(self.task.allow_cases(path, usize::MAX).map(|()| Vec::new())?),
+        }
+    }
+
+    fn generalize(&self, path: PathId, counterexample: &Known, before: &[Option<Known>]) -> Instance {
+        let open = !self.rules[path].commands.inputs.is_empty();
+        let values = if open { counterexample.states[1..].to_vec() } else { Vec::new() };
+        Instance { values, ..generalize(self.task.objective, path, counterexample, before, &|_| false) }
+    }
+
+    fn realize(&self, path: PathId, instance: &Instance, known: &[Option<Known>]) -> Option<Known> {
+        let (system, rules) = (self.task.system(path), &self.rules[path]);
+        let other = |p: PathId| known[usize::from(p)].as_ref();
+        let first = match &instance.start {
+            Start::State(state) => state.clone(),
+            Start::Same(p) => other(*p)?.states[0].clone(),
+        };
+        if holds_in(system, &system.init, &first) != Some(true) {
+            return None;
+        }
+        let mut path = Known { states: vec![first], actions: Vec::new(), numbers: Vec::new() };
+        for (time, &movement) in instance.moves.iter().enumerate() {
+            let action = movement.action(|p| other(p)?.actions.get(time).copied())?;
+            let preferred = match movement {
+                Move::Act(_, number) | Move::SameAction(_, number) => number,
+                Move::Same(_) => 0,
+            };
+            let from = path.states.last()?;
+            let values = instance.values.get(time).unwrap_or(from);
+            let (number, next) = rules.commands.preferred(system, from, action, preferred, values)?;
+            path.states.push(next);
+            path.actions.push(action);
+            path.numbers.push(number);
+        }
+        let lasts = rules.lasts(path.states.last()?);
+        lasts.then_some(path)
+    }
+
+    fn picks_outcomes(&self, path: PathId, known: &Known) -> bool {
+        let (system, commands) = (self.task.system(path), &self.rules[path].commands);
+        let mut steps = known.states.iter().zip(&known.actions);
+        steps.any(|(state, &action)| commands.has_outcomes(system, state, action))
+    }
+
+    fn stuck(&self, path: PathId) -> Option<Script> {
+        if self.graphs[path].is_some() {
+            return None;
+        }
+        let mut script = Script::new();
+        let names = Names::new(&self.task, path, 0);
+        stuck_state(&mut script, &self.builder(path, &names));
+        Some(script)
+    }
+}
+
+/// Paths of one query whose states are written by variable.
+struct VariableQuery<'e, 'a> {
+    writer: &'e ByVariable<'a>,
+    paths: Paths<VariablePath>,
+    /// For each command whether it can be taken, by path and time.
+    enabled: FxHashMap<(Written, u32), Arc<Vec<Term>>>,
+    copies: Arc<Copies>,
+}
+
+impl VariableQuery<'_, '_> {
+    fn system(&self, path: Written) -> &System {
+        self.writer.task.system(self.paths[path].path)
+    }
+
+    fn commands(&self, path: Written) -> &Commands {
+        &self.writer.rules[self.paths[path].path].commands
+    }
+
+    fn state(&self, path: Written, time: u32) -> &[Val] {
+        &self.paths[path].states[time as usize]
+    }
+
+    /// For each command, whether it can be taken at a time.
+    fn enabled_commands(&mut self, terms: &mut Terms, path: Written, time: u32) -> Arc<Vec<Term>> {
+        if let Some(known) = self.enabled.get(&(path, time)) {
+            return known.clone();
+        }
+        let found = enabled(self.commands(path), terms, self.system(path), self.state(path, time));
+        self.enabled.entry((path, time)).or_insert(Arc::new(found)).clone()
+    }
+}
+
+impl Writing for VariableQuery<'_, '_> {
+    fn declare(&mut self, script: &mut Script, path: PathId, _: &Goal) -> Result<Written, Error> {
+        let names = self.copies.next(&self.writer.task, path);
+        Ok(self.paths.push(self.writer.builder(path, &names).declare(script)))
+    }
+
+    fn bind(&mut self, terms: &mut Terms, path: PathId, _: &Goal) -> Result<Bound, Error> {
+        let names = self.copies.next(&self.writer.task, path);
+        let (path, variables, guard) = self.writer.builder(path, &names).bind(terms);
+        Ok(Bound { path: self.paths.push(path), variables, guard })
+    }
+
+    fn fix(&mut self, terms: &mut Terms, path: PathId, known: &Known) -> Option<Written> {
+        Some(self.paths.push(VariablePath::fix(terms, path, known)))
+    }
+
+    fn instantiate(
+        &mut self,
+        script: &mut Script,
+        path: PathId,
+        instance: &Instance,
+        env: &Env,
+        _: &Goal,
+    ) -> Result<(Written, Term), Error> {
+        // No symbol is made, so the names do not matter.
+        let names = Names::new(&self.writer.task, path, 0);
+        let builder = self.writer.builder(path, &names);
+        let (path, guard) = builder.instantiate(&mut script.terms, instance, &self.paths.all_of(env));
+        Ok((self.paths.push(path), guard))
+    }
+
+    fn restrict(&mut self, _: &mut Script, _: Written, _: &Goal, _: &[(PathId, Known)]) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn sweep(&mut self, _: &mut Script, _: PathId, _: &Env, _: &Goal) -> Result<bool, Error> {
+        Ok(false)
+    }
+
+    fn symbols(&self, written: Written) -> Vec<Term> {
+        self.paths[written].symbols(self.commands(written))
+    }
+
+    fn decode(&self, written: Written, model: &Model) -> Option<Known> {
+        self.paths[written].decode(self.system(written), self.commands(written), model)
+    }
+
+    fn starts(&self, terms: &mut Terms, written: Written, state: &State) -> Vec<Term> {
+        let values = self.state(written, 0).iter().zip(state);
+        values.map(|(value, &known)| is(terms, value, known)).collect()
+    }
+
+    fn took(&self, written: Written, step: usize, action: ActionId) -> Term {
+        self.paths[written].steps[step].took(action)
+    }
+
+    fn same_state(&self, terms: &mut Terms, p: Written, q: Written, time: u32) -> Term {
+        let pairs = self.state(p, time).iter().zip(self.state(q, time));
+        let parts: Vec<Term> = pairs.map(|(a, b)| same(terms, a, b)).collect();
+        terms.and(&parts)
+    }
+
+    fn enabled(&mut self, terms: &mut Terms, path: Written, time: u32, action: ActionId) -> Term {
+        let enabled = self.enabled_commands(terms, path, time);
+        let own: Vec<Term> = self.commands(path).of_action(action).map(|at| enabled[at]).collect();
+        terms.or(&own)
+    }
+
+    fn halted(&mut self, terms: &mut Terms, path: Written, time: u32) -> Term {
+        let enabled = self.enabled_commands(terms, path, time);
+        halted(self.commands(path), terms, self.system(path), self.state(path, time), &enabled)
+    }
+
+    fn leaf(&self, terms: &mut Terms, path: Written, time: u32, leaf: Leaf) -> Val {
+        InState { system: self.system(path), state: self.state(path, time) }.leaf(terms, &leaf)
+    }
+
+    fn whole(&self, _: &mut Terms, _: Written, _: u32, _: &Expr<PathLeaf>) -> Option<Val> {
+        None
+    }
+
+    fn atom(&mut self, _: &mut Terms, _: Written, _: u32, _: (FormulaId, &Expr<PathLeaf>)) -> Option<Term> {
+        None
+    }
+}

@@ -1,0 +1,57 @@
+//! The explored paths together with what is left of the goal.
+
+use super::atoms::{Atoms, Bits};
+use super::question::{Place, Question};
+use crate::residual::{Now, Residual, Residuals};
+use hyperplan_problem::{FormulaId, Node};
+use hyperplan_space::Graph;
+
+pub(crate) struct Product<'a, const N: usize> {
+    pub(crate) question: &'a Question<'a, N>,
+    pub(crate) graphs: [&'a Graph; N],
+    /// The last time that one of the paths is read at.
+    pub(crate) horizon: u32,
+    pub(super) atoms: Atoms<'a, N>,
+    pub(crate) residuals: Residuals,
+    pub(crate) initial: Residual,
+}
+
+impl<'a, const N: usize> Product<'a, N> {
+    pub(super) fn new(question: &'a Question<'a, N>) -> Self {
+        let task = &question.arena.task;
+        let graphs = question.paths.map(|path| &*question.arena.graphs[path]);
+        let horizon = question.paths.iter().map(|&path| task.horizon(path)).max().unwrap_or(0);
+        let atoms = Atoms::new(question, graphs, horizon);
+        let bit = |id: FormulaId| atoms.bit.get(&id).copied();
+        let (residuals, initial) = Residuals::new(&task.objective.formula, question.goal, &bit);
+        Product { question, graphs, horizon, atoms, residuals, initial }
+    }
+
+    /// The values of the atoms where the paths enter these places at a time.
+    pub(super) fn bits(&mut self, places: &[Place; N], time: u32) -> Bits {
+        self.atoms.bits(self.question, &self.graphs, places, time)
+    }
+
+    /// What is left once the atoms have these values at a time.
+    pub(super) fn progress(&mut self, before: Residual, bits: Bits, time: u32) -> Residual {
+        let last = self.question.arena.task.is_last(time);
+        self.residuals.progress(before, Now { bits: bits.holds, unknown: bits.unknown, last })
+    }
+
+    /// What is left where the paths enter these places at any time, as far as these tell, relaxed.
+    pub(super) fn relaxed(&mut self, before: Residual, places: &[Place; N]) -> Residual {
+        let bits = self.atoms.own_bits(self.question, &self.graphs, places);
+        self.residuals.progress(before, Now { bits: bits.holds, unknown: bits.unknown, last: false })
+    }
+
+    /// Whether nothing but safety is owed any more.
+    pub(super) fn owes_nothing(&self, residual: Residual) -> bool {
+        self.residuals.owes_nothing(residual, &self.atoms.settling)
+    }
+
+    /// Whether every atom of the formula is known.
+    pub(crate) fn knows_all(&self) -> bool {
+        let nodes = &self.question.arena.task.objective.formula.nodes;
+        nodes.iter().filter(|node| matches!(node, Node::Atom(_))).count() == self.atoms.bit.len()
+    }
+}

@@ -1,0 +1,377 @@
+//! Enumerating the reachable states of a system, breadth first from its initial ones.
+
+use crate::eval::{bounds, eval_in};
+use crate::graph::{Graph, LIVE, Letter, StateIx, TooLarge};
+use hyperplan_problem::{ActionId, Clause, Expr, Leaf, System, Update, VarId};
+use rustc_hash::FxHashMap;
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, PoisonError};
+
+impl Graph {
+    /// Enumerates a system, unless it has more than `budget` reachable states (or as many transitions times 16).
+    ///
+    /// # Errors
+    /// [`TooLarge`] beyond the budget, or where the initial states cannot be enumerated within it.
+    pub fn explore(system: &System, budget: usize) -> Result<Graph, TooLarge> {
+        let packing = Packing::new(system).ok_or(TooLarge)?;
+        let mut explorer = Explorer {
+            system,
+            budget,
+            packing,
+            width: system.vars.len(),
+            codes: Vec::new(),
+            index: FxHashMap::default(),
+            positions: (0u32..).zip(&system.actions).map(|(at, action)| (*action, at)).collect(),
+        };
+        let initial = explorer.initial_states()?;
+        let (starts, edges) = explorer.edges()?;
+        let Explorer { codes, width, .. } = explorer;
+        let (letters, transitions) = number_letters(system, &starts, &edges);
+        let rank = ranks(&starts, &transitions);
+        Ok(Graph { width, codes, initial, letters, starts, transitions, rank })
+    }
+}
+
+/// Systems that were enumerated, for objectives over equal ones.
+#[derive(Debug, Default)]
+pub struct Graphs {
+    known: Mutex<Vec<Explored>>,
+}
+
+/// A system, the budget, and what came of it.
+type Explored = (System, usize, Option<Arc<Graph>>);
+
+impl Graphs {
+    /// As [`Graph::explore`], but an equal system with the same budget is not enumerated again; `None` beyond the
+    /// budget.
+    #[must_use]
+    pub fn explore(&self, system: &System, budget: usize) -> Option<Arc<Graph>> {
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, _, graph)) = known.iter().find(|(s, b, _)| *b == budget && s == system) {
+            return graph.clone();
+        }
+        let graph = Graph::explore(system, budget).ok().map(Arc::new);
+        known.push((system.clone(), budget, graph.clone()));
+        graph
+    }
+}
+
+/// Packs a state into one integer, mixed radix.
+struct Packing {
+    /// Least code and number of codes of each variable.
+    radix: Vec<(i64, u128)>,
+}
+
+impl Packing {
+    fn new(system: &System) -> Option<Packing> {
+        let radix: Vec<(i64, u128)> = system
+            .vars
+            .iter()
+            .map(|var| {
+                let (lo, hi) = bounds(&var.ty)?;
+                Some((lo, (hi - lo) as u128 + 1))
+            })
+            .collect::<Option<_>>()?;
+        radix.iter().try_fold(1u128, |product, (_, n)| product.checked_mul(*n))?;
+        Some(Packing { radix })
+    }
+
+    /// `None` where a value is outside its type.
+    fn pack(&self, row: &[i64]) -> Option<u128> {
+        let mut packed = 0u128;
+        for (&value, &(lo, n)) in row.iter().zip(&self.radix) {
+            let digit = u128::try_from(value.checked_sub(lo)?).ok().filter(|d| *d < n)?;
+            packed = packed * n + digit;
+        }
+        Some(packed)
+    }
+}
+
+struct Explorer<'a> {
+    system: &'a System,
+    budget: usize,
+    packing: Packing,
+    width: usize,
+    codes: Vec<i64>,
+    index: FxHashMap<u128, StateIx>,
+    /// The position of each action in the system.
+    positions: FxHashMap<ActionId, u32>,
+}
+
+/// Transitions as found: action's position in the system, successor.
+type Edges = Vec<(u32, StateIx)>;
+
+impl Explorer<'_> {
+    /// The index of a state, new or known; `None` where it is outside the types.
+    fn intern(&mut self, row: &[i64]) -> Result<Option<StateIx>, TooLarge> {
+        let Some(packed) = self.packing.pack(row) else { return Ok(None) };
+        let next = self.index.len();
+        if let Some(&known) = self.index.get(&packed) {
+            return Ok(Some(known));
+        }
+        if next >= self.budget {
+            return Err(TooLarge);
+        }
+        let id = next as StateIx;
+        self.index.insert(packed, id);
+        self.codes.extend_from_slice(row);
+        Ok(Some(id))
+    }
+
+    /// Every assignment that satisfies `init`, variable by variable; each conjunct is tested as soon as the
+    /// variables that it reads are assigned.
+    fn initial_states(&mut self) -> Result<Vec<StateIx>, TooLarge> {
+        let system = self.system;
+        let mut tests: Vec<Vec<&Expr<Leaf>>> = vec![Vec::new(); self.width + 1];
+        for conjunct in conjuncts(&system.init) {
+            tests[variables_needed(system, conjunct)].push(conjunct);
+        }
+        let mut initial = Vec::new();
+        if tests[0].iter().any(|e| eval_in(system, e, &[]) == 0) {
+            return Ok(initial);
+        }
+        let types: Vec<(i64, i64)> = system.vars.iter().filter_map(|v| bounds(&v.ty)).collect();
+        let mut row: Vec<i64> = Vec::with_capacity(self.width);
+        let mut visited = 0usize;
+        // Depth-first over prefixes; `row` holds the current prefix.
+        loop {
+            if row.len() == self.width {
+                initial.extend(self.intern(&row)?);
+            } else {
+                row.push(types[row.len()].0);
+                visited += 1;
+                if tests[row.len()].iter().all(|e| eval_in(system, e, &row) != 0) {
+                    continue;
+                }
+            }
+            loop {
+                let Some(last) = row.pop() else { return Ok(initial) };
+                if last < types[row.len()].1 {
+                    row.push(last + 1);
+                    visited += 1;
+                    if visited > self.budget.saturating_mul(16) {
+                        return Err(TooLarge);
+                    }
+                    if tests[row.len()].iter().all(|e| eval_in(system, e, &row) != 0) {
+                        break;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Breadth first from the states interned so far.
+    fn edges(&mut self) -> Result<(Vec<u32>, Edges), TooLarge> {
+        let mut starts = vec![0u32];
+        let mut edges: Edges = Vec::new();
+        let mut found = Vec::new();
+        let mut at = 0usize;
+        while at < self.index.len() {
+            let row = self.codes[at * self.width..(at + 1) * self.width].to_vec();
+            found.clear();
+            self.successors(&row, &mut found)?;
+            found.sort_unstable();
+            found.dedup();
+            edges.extend_from_slice(&found);
+            if edges.len() > self.budget.saturating_mul(16) {
+                return Err(TooLarge);
+            }
+            starts.push(edges.len() as u32);
+            at += 1;
+        }
+        Ok((starts, edges))
+    }
+
+    fn successors(&mut self, row: &[i64], found: &mut Edges) -> Result<(), TooLarge> {
+        let system = self.system;
+        if eval_in(system, &system.absorb, row) != 0 {
+            if let Some(here) = self.intern(row)? {
+                found.extend((0..system.actions.len() as u32).map(|a| (a, here)));
+            }
+            return Ok(());
+        }
+        for clause in &system.clauses {
+            if eval_in(system, &clause.guard, row) == 0 {
+                continue;
+            }
+            for next in outcomes(system, clause, row, self.budget)? {
+                if let Some(next) = self.intern(&next)? {
+                    found.extend(action_positions(system, clause).map(|a| (a, next)));
+                }
+            }
+        }
+        self.listed(row, found)
+    }
+
+    /// The transitions that the system lists one by one.
+    fn listed(&mut self, row: &[i64], found: &mut Edges) -> Result<(), TooLarge> {
+        let Some(edges) = &self.system.edges else { return Ok(()) };
+        let at = usize::from(edges.var);
+        let mut next = row.to_vec();
+        for edge in edges.of(u32::try_from(row[at]).unwrap_or(u32::MAX)) {
+            next[at] = i64::from(edge.to);
+            if let (Some(next), Some(&action)) = (self.intern(&next)?, self.positions.get(&edge.action)) {
+                found.push((action, next));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The rows that a clause's updates allow, in or out of range.
+pub(crate) fn outcomes(
+    system: &System,
+    clause: &Clause,
+    row: &[i64],
+    budget: usize,
+) -> Result<Vec<Vec<i64>>, TooLarge> {
+    let mut all = vec![row.to_vec()];
+    for (var, update) in &clause.updates {
+        let values = update_values(system, *var, update, row);
+        if values.len().saturating_mul(all.len()) > budget {
+            return Err(TooLarge);
+        }
+        all = all
+            .iter()
+            .flat_map(|done| {
+                values.iter().map(|&value| {
+                    let mut next = done.clone();
+                    next[usize::from(*var)] = value;
+                    next
+                })
+            })
+            .collect();
+    }
+    Ok(all)
+}
+
+/// The least and greatest values that an update gives, whatever the variable's type.
+pub(crate) fn update_values_unclipped(system: &System, update: &Update, row: &[i64]) -> Vec<i64> {
+    match update {
+        Update::Assign(e) => vec![eval_in(system, e, row)],
+        Update::OneOf(es) => es.iter().map(|e| eval_in(system, e, row)).collect(),
+        Update::Within(lo, hi) => vec![eval_in(system, lo, row), eval_in(system, hi, row)],
+    }
+}
+
+/// The values that an update allows; those outside the variable's type may be left out.
+fn update_values(system: &System, var: VarId, update: &Update, row: &[i64]) -> Vec<i64> {
+    match update {
+        Update::Assign(_) | Update::OneOf(_) => update_values_unclipped(system, update, row),
+        Update::Within(lo, hi) => {
+            let (lo, hi) = (eval_in(system, lo, row), eval_in(system, hi, row));
+            let (least, greatest) = bounds(&system.vars[var].ty).unwrap_or((lo, hi));
+            (lo.max(least)..=hi.min(greatest)).collect()
+        }
+    }
+}
+
+fn action_positions<'a>(system: &'a System, clause: &'a Clause) -> impl Iterator<Item = u32> + 'a {
+    (0u32..).zip(&system.actions).filter(|(_, a)| clause.actions.contains(a)).map(|(at, _)| at)
+}
+
+/// The parts of a conjunction.
+fn conjuncts(expr: &Expr<Leaf>) -> Vec<&Expr<Leaf>> {
+    match expr {
+        Expr::And(es) => es.iter().flat_map(conjuncts).collect(),
+        other => vec![other],
+    }
+}
+
+/// How many variables, in order of declaration, must be assigned before the expression has a value.
+fn variables_needed(system: &System, expr: &Expr<Leaf>) -> usize {
+    let mut needed = 0;
+    expr.for_each_leaf(&mut |leaf| {
+        needed = needed.max(match *leaf {
+            Leaf::Var(v) => usize::from(v) + 1,
+            Leaf::Label(l) => variables_needed(system, &system.labels[l].expr),
+        });
+    });
+    needed
+}
+
+type Letters = Vec<(ActionId, u32)>;
+type Transitions = Vec<(Letter, StateIx)>;
+
+/// Turns (action, successor) pairs into letters.
+fn number_letters(system: &System, starts: &[u32], edges: &Edges) -> (Letters, Transitions) {
+    let mut most = vec![0u32; system.actions.len()];
+    // The edges of a state are sorted, so those of an action are neighbours; graphs may have as many actions as
+    // states, and no state is made to look at all of them.
+    let states = || starts.windows(2).map(|w| &edges[w[0] as usize..w[1] as usize]);
+    for same in states().flat_map(|edges| edges.chunk_by(|a, b| a.0 == b.0)) {
+        let most = &mut most[same[0].0 as usize];
+        *most = (*most).max(same.len() as u32);
+    }
+    let mut first = Vec::new();
+    let mut letters = Vec::new();
+    for (at, &action) in system.actions.iter().enumerate() {
+        first.push(letters.len() as Letter);
+        letters.extend((0..most[at]).map(|n| (action, n)));
+    }
+    let mut transitions = Vec::with_capacity(edges.len());
+    for same in states().flat_map(|edges| edges.chunk_by(|a, b| a.0 == b.0)) {
+        let numbered = (first[same[0].0 as usize]..).zip(same);
+        transitions.extend(numbered.map(|(letter, &(_, next))| (letter, next)));
+    }
+    (letters, transitions)
+}
+
+/// The longest path from each state: states are peeled off once all their successors are.
+fn ranks(starts: &[u32], transitions: &[(Letter, StateIx)]) -> Vec<u32> {
+    let states = starts.len() - 1;
+    let mut rank = vec![LIVE; states];
+    let mut left: Vec<u32> = starts.windows(2).map(|w| w[1] - w[0]).collect();
+    let mut queue: VecDeque<StateIx> = (0..states as StateIx).filter(|&s| left[s as usize] == 0).collect();
+    if queue.is_empty() {
+        return rank;
+    }
+    let predecessors = predecessors(starts, transitions);
+    let mut longest = vec![0u32; states];
+    while let Some(state) = queue.pop_front() {
+        let own = longest[state as usize];
+        rank[state as usize] = own;
+        for &before in predecessors.of(state) {
+            longest[before as usize] = longest[before as usize].max(own + 1);
+            left[before as usize] -= 1;
+            if left[before as usize] == 0 {
+                queue.push_back(before);
+            }
+        }
+    }
+    rank
+}
+
+/// Who leads to each state, once per transition.
+struct Predecessors {
+    starts: Vec<u32>,
+    states: Vec<StateIx>,
+}
+
+impl Predecessors {
+    fn of(&self, state: StateIx) -> &[StateIx] {
+        let at = state as usize;
+        &self.states[self.starts[at] as usize..self.starts[at + 1] as usize]
+    }
+}
+
+fn predecessors(starts: &[u32], transitions: &[(Letter, StateIx)]) -> Predecessors {
+    let count = starts.len() - 1;
+    let mut ends = vec![0u32; count + 1];
+    for &(_, next) in transitions {
+        ends[next as usize + 1] += 1;
+    }
+    for at in 0..count {
+        ends[at + 1] += ends[at];
+    }
+    let result_starts = ends.clone();
+    let mut states = vec![0; transitions.len()];
+    for state in 0..count {
+        for &(_, next) in &transitions[starts[state] as usize..starts[state + 1] as usize] {
+            let slot = &mut ends[next as usize];
+            states[*slot as usize] = state as StateIx;
+            *slot += 1;
+        }
+    }
+    Predecessors { starts: result_starts, states }
+}

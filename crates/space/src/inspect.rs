@@ -1,0 +1,117 @@
+//! What `check` wants to know of a system's reachable states.
+
+use crate::eval::{bounds, eval_in};
+use crate::explore::{outcomes, update_values_unclipped};
+use crate::graph::{Graph, StateIx};
+use hyperplan_problem::{Expr, LabelId, Leaf, System, Var};
+
+/// Things that are probably not meant, each with a reachable state as an example.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Findings {
+    /// How many reachable states have no transition, and one of them.
+    pub dead_ends: Option<(usize, StateIx)>,
+    /// Labels that hold in no reachable state.
+    pub unreachable: Vec<LabelId>,
+    /// Pairs of written clauses of one action that are enabled together and lead to different states, by position.
+    pub overlaps: Vec<(usize, usize, StateIx)>,
+    /// Written clauses enabled together with a move of the map, or a transition of the graph, of the same action.
+    pub added: Vec<(usize, StateIx)>,
+    /// Written clauses an update of which leaves its variable's range where the clause is enabled.
+    pub lost: Vec<(usize, StateIx)>,
+}
+
+/// States looked at between two questions whether to stop.
+const STRIDE: StateIx = 256;
+
+/// Values of all choices of a clause beyond which its outcomes are not compared with another's.
+const OUTCOMES: usize = 1024;
+
+/// Looks at every reachable state. `None` if the caller wanted to stop before the last.
+#[must_use]
+pub fn inspect(system: &System, graph: &Graph, stop: &dyn Fn() -> bool) -> Option<Findings> {
+    let mut findings = Findings::default();
+    let mut seen = vec![false; system.labels.len()];
+    for state in 0..graph.len() as StateIx {
+        if state % STRIDE == 0 && stop() {
+            return None;
+        }
+        let row = graph.codes(state);
+        if graph.successors(state).is_empty() {
+            let (count, _) = findings.dead_ends.get_or_insert((0, state));
+            *count += 1;
+        }
+        for (at, seen) in seen.iter_mut().enumerate() {
+            *seen |= eval_in(system, &Expr::Leaf(Leaf::Label(LabelId::from(at))), row) != 0;
+        }
+        if eval_in(system, &system.absorb, row) == 0 {
+            clauses(system, state, row, &mut findings);
+        }
+    }
+    findings.unreachable = (0..seen.len()).filter(|&at| !seen[at]).map(LabelId::from).collect();
+    Some(findings)
+}
+
+fn clauses(system: &System, state: StateIx, row: &[i64], findings: &mut Findings) {
+    let enabled: Vec<usize> = (0..system.clauses.len())
+        .filter(|&at| !system.clauses[at].generated && eval_in(system, &system.clauses[at].guard, row) != 0)
+        .collect();
+    for (at, &first) in enabled.iter().enumerate() {
+        for &second in &enabled[at + 1..] {
+            let actions = &system.clauses[second].actions;
+            let shared = system.clauses[first].actions.iter().any(|a| actions.contains(a));
+            let known = || findings.overlaps.iter().any(|o| (o.0, o.1) == (first, second));
+            if shared && !known() && differ(system, first, second, row) {
+                findings.overlaps.push((first, second, state));
+            }
+        }
+        if !findings.added.iter().any(|a| a.0 == first) && adds(system, first, row) {
+            findings.added.push((first, state));
+        }
+        if !findings.lost.iter().any(|l| l.0 == first) && leaves_range(system, first, row) {
+            findings.lost.push((first, state));
+        }
+    }
+}
+
+/// Whether both clauses have outcomes, and not the same.
+fn differ(system: &System, first: usize, second: usize, row: &[i64]) -> bool {
+    let outcomes = |clause: usize| -> Option<Vec<Vec<i64>>> {
+        let mut all = outcomes(system, &system.clauses[clause], row, OUTCOMES).ok()?;
+        let inside = |next: &Vec<i64>| {
+            let fits =
+                |(value, var): (&i64, &Var)| bounds(&var.ty).is_none_or(|(lo, hi)| (lo..=hi).contains(value));
+            next.iter().zip(&system.vars).all(fits)
+        };
+        all.retain(inside);
+        all.sort_unstable();
+        all.dedup();
+        Some(all)
+    };
+    match (outcomes(first), outcomes(second)) {
+        (Some(a), Some(b)) => !a.is_empty() && !b.is_empty() && a != b,
+        _ => true,
+    }
+}
+
+/// Whether a clause gives one of its actions another outcome than the map or graph does.
+fn adds(system: &System, clause: usize, row: &[i64]) -> bool {
+    let actions = &system.clauses[clause].actions;
+    let moves = || {
+        let moves = system.clauses.iter().enumerate().filter(|(_, c)| c.generated);
+        moves
+            .filter(|(_, c)| c.actions.iter().any(|a| actions.contains(a)))
+            .any(|(at, c)| eval_in(system, &c.guard, row) != 0 && !leaves_range(system, at, row))
+    };
+    let listed = system.edges.as_ref().is_some_and(|edges| {
+        let at = u32::try_from(row[usize::from(edges.var)]).unwrap_or(u32::MAX);
+        edges.of(at).iter().any(|edge| actions.contains(&edge.action))
+    });
+    listed || moves()
+}
+
+fn leaves_range(system: &System, clause: usize, row: &[i64]) -> bool {
+    system.clauses[clause].updates.iter().any(|(var, update)| {
+        let Some((lo, hi)) = bounds(&system.vars[*var].ty) else { return false };
+        update_values_unclipped(system, update, row).iter().any(|v| !(lo..=hi).contains(v))
+    })
+}
