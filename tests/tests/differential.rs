@@ -182,7 +182,7 @@ fn action(problem: &Problem, name: &str) -> hyperplan_problem::ActionId {
 #[derive(Clone, Copy, Debug)]
 struct Way {
     quantifiers: Quantifiers,
-    states: States,
+    states: Option<States>,
     limits: Limits,
 }
 
@@ -196,11 +196,11 @@ impl Way {
         let mut ways = Vec::new();
         for &quantifiers in quantifiers {
             for states in [States::Onehot, States::Enum, States::Bitvec, States::Int, States::Real] {
-                ways.push(Way { quantifiers, states, limits: usual });
+                ways.push(Way { quantifiers, states: Some(states), limits: usual });
             }
             if *solver == Spec::Builtin {
-                ways.push(Way { quantifiers, states: States::Onehot, limits: unpruned });
-                ways.push(Way { quantifiers, states: States::Auto, limits: tight });
+                ways.push(Way { quantifiers, states: Some(States::Onehot), limits: unpruned });
+                ways.push(Way { quantifiers, states: None, limits: tight });
             }
         }
         ways
@@ -251,7 +251,7 @@ impl Answers {
         for way in Way::all(solver, ways) {
             let finite = typed.systems.iter().all(hyperplan_problem::System::is_finite);
             // The embedded solver has no numbers, and what is not finite is nothing else.
-            let numbers = matches!(way.states, States::Int | States::Real);
+            let numbers = way.states.is_some_and(States::is_arithmetic);
             if numbers && *solver == Spec::Builtin || !numbers && !finite {
                 continue;
             }

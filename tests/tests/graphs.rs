@@ -71,7 +71,8 @@ fn graphs_are_decided_as_brute_force_does() {
         for quantifiers in [Quantifiers::Auto, Quantifiers::Cegis, Quantifiers::Expand] {
             for states in [States::Onehot, States::Enum, States::Bitvec] {
                 let deadline = Deadline::after(Duration::from_secs(60));
-                let config = Config { quantifiers, states, deadline, ..Config::new(Spec::Builtin) };
+                let config =
+                    Config { quantifiers, states: Some(states), deadline, ..Config::new(Spec::Builtin) };
                 let way = format!("--quantifiers {quantifiers} --states {states}");
                 // A witness was checked by then.
                 match solve(&typed, objective, &config) {

@@ -15,14 +15,10 @@ pub(crate) struct Atoms<'b, 'e> {
 }
 
 impl AtomTerms for Atoms<'_, '_> {
-    fn atom(&mut self, terms: &mut Terms, atom: (FormulaId, &Expr<PathLeaf>), time: u32) -> Term {
-        if let Some(path) = only_path(atom.1)
-            && let Some(term) = self.writing.atom(terms, at(self.env, path), time, atom)
-        {
-            return term;
-        }
+    fn atom(&mut self, terms: &mut Terms, (id, expr): (FormulaId, &Expr<PathLeaf>), time: u32) -> Term {
         let Atoms { task, env, .. } = *self;
-        translate(terms, atom.1, &mut AtTime { task, env, writing: self.writing, time }).truth()
+        let atom = Some(id);
+        translate(terms, expr, &mut AtTime { task, env, writing: self.writing, time, atom }).truth()
     }
 }
 
@@ -46,6 +42,8 @@ pub(crate) struct AtTime<'b, 'e> {
     pub(crate) env: &'b Env,
     pub(crate) writing: &'b mut (dyn Writing + 'e),
     pub(crate) time: u32,
+    /// The atom, as long as nothing of it was read.
+    pub(crate) atom: Option<FormulaId>,
 }
 
 impl AtTime<'_, '_> {
@@ -67,6 +65,8 @@ impl Leaves<PathLeaf> for AtTime<'_, '_> {
         let of = |path: PathId| at(env, path);
         match *leaf {
             PathLeaf::State(p, leaf) => self.writing.leaf(terms, of(p), time, leaf),
+            PathLeaf::Enabled(p, action) => Val::Bool(self.writing.enabled(terms, of(p), time, action)),
+            PathLeaf::Halted(p) => Val::Bool(self.writing.halted(terms, of(p), time)),
             // The action just taken; at time 0 none was.
             PathLeaf::Took(p, action) => Val::Bool(match time.checked_sub(1) {
                 Some(step) => self.writing.took(of(p), step as usize, action),
@@ -78,13 +78,12 @@ impl Leaves<PathLeaf> for AtTime<'_, '_> {
                 Val::Bool(self.same_action(terms, of(p), of(q), actions))
             }
             PathLeaf::SameState(p, q) => Val::Bool(self.writing.same_state(terms, of(p), of(q), time)),
-            PathLeaf::Enabled(p, action) => Val::Bool(self.writing.enabled(terms, of(p), time, action)),
-            PathLeaf::Halted(p) => Val::Bool(self.writing.halted(terms, of(p), time)),
         }
     }
 
     fn whole(&mut self, terms: &mut Terms, expr: &Expr<PathLeaf>) -> Option<Val> {
+        let atom = self.atom.take();
         let path = only_path(expr)?;
-        self.writing.whole(terms, at(self.env, path), self.time, expr)
+        self.writing.whole(terms, at(self.env, path), self.time, expr, atom)
     }
 }

@@ -3,12 +3,10 @@
 use crate::enumerated::Enumerated;
 use crate::variables::{ByVariable, Numbers};
 use crate::writing::Writer;
-use hyperplan_problem::{Objective, PathId, Problem, System, Trace};
-use hyperplan_relevance::{
-    self as relevance, Arena, Goal, Instance, Known, Limits, Narrowing, Relevant, Stop, Task,
-};
-use hyperplan_smt::Script;
+use hyperplan_problem::{Objective, PathId, Problem, System};
+use hyperplan_relevance::{self as relevance, Arena, Limits, Stop, Task};
 use hyperplan_space::{Graph, Graphs};
+use std::fmt;
 use std::sync::Arc;
 use typed_index_collections::TiVec;
 
@@ -25,6 +23,18 @@ pub enum States {
     Enum,
     /// A real for each variable.
     Real,
+}
+
+impl fmt::Display for States {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            States::Onehot => "onehot",
+            States::Bitvec => "bitvec",
+            States::Int => "int",
+            States::Enum => "enum",
+            States::Real => "real",
+        })
+    }
 }
 
 impl States {
@@ -114,7 +124,8 @@ pub struct Encoder<'a> {
     pub(crate) task: Task<'a>,
     /// The states of each path's system, where they were enumerated.
     graphs: TiVec<PathId, Option<Arc<Graph>>>,
-    pub(crate) writer: Box<dyn Writer + 'a>,
+    /// How states are written, and what comes of that.
+    pub writer: Box<dyn Writer + 'a>,
 }
 
 impl<'a> Encoder<'a> {
@@ -195,62 +206,12 @@ impl<'a> Encoder<'a> {
         Some(graph.initial.iter().any(|&state| self.task.lasts(graph, state, 0)))
     }
 
-    /// For a system that was not enumerated, in bounded mode: a script that is unsatisfiable only if no state is a
-    /// dead end.
-    #[must_use]
-    pub fn stuck(&self, path: PathId) -> Option<Script> {
-        self.writer.stuck(path)
-    }
-
-    /// What can matter of the leading block for its player to reach the goal.
-    ///
-    /// # Errors
-    /// [`Error::TooLarge`] where too much can matter.
-    pub fn relevant(&self, block: &[PathId], goal: &Goal, narrowing: Narrowing) -> Result<Relevant, Error> {
-        self.writer.relevant(block, goal, narrowing)
-    }
-
-    /// The instance that a counterexample stands for, given the paths before it. Under these the instance is exactly
-    /// the counterexample.
-    #[must_use]
-    pub fn generalize(&self, path: PathId, counterexample: &Known, before: &[Option<Known>]) -> Instance {
-        self.writer.generalize(path, counterexample, before)
-    }
-
-    /// The path that an instance describes once the paths that it refers to are known; `None` where it describes
-    /// none: then it asks for nothing.
-    #[must_use]
-    pub fn realize(&self, path: PathId, instance: &Instance, known: &[Option<Known>]) -> Option<Known> {
-        self.writer.realize(path, instance, known)
-    }
-
-    /// A trace as a known path, cut to its horizon; `None` where it is no path of the system, or too short.
-    #[must_use]
-    pub fn known(&self, trace: &Trace) -> Option<Known> {
-        self.writer.known(trace)
-    }
-
-    /// The finitely many instances that together cover every choice of a path with which its player can
-    /// reach the goal.
-    ///
-    /// # Errors
-    /// [`Error::TooManyCases`] beyond the limit, and where states were not enumerated.
-    pub fn cases(&self, path: PathId, goal: &Goal) -> Result<Vec<Instance>, Error> {
-        self.writer.cases(path, goal)
-    }
-
     /// Whether so many copies of the formula may be made on account of a path.
     ///
     /// # Errors
     /// [`Error::TooManyCases`] beyond the limit.
     pub fn allow_cases(&self, path: PathId, copies: usize) -> Result<(), Error> {
         Ok(self.task.allow_cases(path, copies)?)
-    }
-
-    /// Whether a path took an action that could have had another outcome.
-    #[must_use]
-    pub fn picks_outcomes(&self, path: PathId, known: &Known) -> bool {
-        self.writer.picks_outcomes(path, known)
     }
 }
 

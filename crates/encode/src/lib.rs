@@ -5,7 +5,7 @@
 //! encoder is built; nothing else can tell them apart. A [`Query`] is one script under construction: paths are declared
 //! (chosen by the solver), bound (by a quantifier), known (constants) or instantiated (defined by inputs in terms of other
 //! paths), and the formula is unrolled over them. What can matter of the leading block is found before
-//! ([`Encoder::relevant`]), and is what a query is made from.
+//! ([`Writer::relevant`]), and is what a query is made from.
 //!
 //! Invariants: nothing here prints or runs a solver; a path is known outside of its query as a
 //! [`hyperplan_relevance::Known`] or an [`Instance`], whatever its states are written as. There is no third party: how a
@@ -31,4 +31,4 @@ pub use hyperplan_relevance::{Goal, Instance, Known, Limits, Narrowing, Relevant
 pub use hyperplan_space::Graphs;
 pub use names::Copies;
 pub use query::Query;
-pub use writing::{Bound, Env, Written};
+pub use writing::{Bound, Env, Writer, Written};

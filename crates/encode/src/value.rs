@@ -11,13 +11,20 @@ use std::collections::BTreeMap;
 
 /// The value of an expression at one time.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Val {
+pub enum Val {
     /// A truth value.
     Bool(Term),
     /// A number (or an enumeration value's position): each value with its condition, by value.
     Cases(Vec<(i64, Term)>),
     /// A signed bit-vector, and bounds of the number that it stands for.
-    Bits { term: Term, lo: i64, hi: i64 },
+    Bits {
+        /// The bit-vector.
+        term: Term,
+        /// The lower bound.
+        lo: i64,
+        /// The upper bound.
+        hi: i64,
+    },
     /// A term of sort Int or Real.
     Number(Term),
 }

@@ -61,11 +61,16 @@ pub struct Bound {
 }
 
 /// A way to write the states of one objective.
-pub(crate) trait Writer: Send + Sync {
-    /// What can matter of the leading block.
-    fn relevant(&self, block: &[PathId], goal: &Goal, narrowing: Narrowing) -> Result<Relevant, Error>;
+pub trait Writer: Send + Sync {
+    /// What can matter of the leading block for its player to reach the goal; by default, everything does.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] where too much can matter.
+    fn relevant(&self, _: &[PathId], _: &Goal, _: Narrowing) -> Result<Relevant, Error> {
+        Ok(Relevant::default())
+    }
 
-    /// A query in which some paths are known, with what was found out about those of the leading block.
+    /// The paths of a query in which some are known, with what was found out about those of the leading block.
     fn begin<'e>(
         &'e self,
         known: &[Option<Known>],
@@ -74,34 +79,55 @@ pub(crate) trait Writer: Send + Sync {
         terms: &mut Terms,
     ) -> Box<dyn Writing + 'e>;
 
-    /// A trace cut to its path's horizon; `None` where it is no path of the system, or too short.
+    /// A trace as a known path, cut to its horizon; `None` where it is no path of the system, or too short.
     fn known(&self, trace: &Trace) -> Option<Known>;
 
-    /// See [`crate::Encoder::cases`].
+    /// The finitely many instances that together cover every choice of a path with which its player can
+    /// reach the goal.
+    ///
+    /// # Errors
+    /// [`Error::TooManyCases`] beyond the limit, and where states were not enumerated.
     fn cases(&self, path: PathId, goal: &Goal) -> Result<Vec<Instance>, Error>;
 
-    /// See [`crate::Encoder::generalize`].
+    /// The instance that a counterexample stands for, given the paths before it. Beside these the instance is exactly
+    /// the counterexample.
     fn generalize(&self, path: PathId, counterexample: &Known, before: &[Option<Known>]) -> Instance;
 
-    /// See [`crate::Encoder::realize`].
+    /// The path that an instance describes once the paths that it refers to are known; `None` where it describes
+    /// none: then it asks for nothing.
     fn realize(&self, path: PathId, instance: &Instance, known: &[Option<Known>]) -> Option<Known>;
 
     /// Whether a path took an action that could have had another outcome.
     fn picks_outcomes(&self, path: PathId, known: &Known) -> bool;
 
-    /// See [`crate::Encoder::stuck`].
-    fn stuck(&self, path: PathId) -> Option<Script>;
+    /// For a system that was not enumerated, in bounded mode: a script that is unsatisfiable only if no state is a
+    /// dead end.
+    fn stuck(&self, _: PathId) -> Option<Script> {
+        None
+    }
 }
 
-/// The paths of one query. Its methods mean what those of [`crate::Query`] say.
-pub(crate) trait Writing: Send {
+/// The paths of one query. What is not said here [`crate::Query`] says.
+pub trait Writing: Send {
+    /// A path that the solver chooses.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] where too much can matter.
     fn declare(&mut self, script: &mut Script, path: PathId, goal: &Goal) -> Result<Written, Error>;
 
+    /// A path under a quantifier.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] where too much can matter.
     fn bind(&mut self, terms: &mut Terms, path: PathId, goal: &Goal) -> Result<Bound, Error>;
 
     /// A known path, as constants.
     fn fix(&mut self, terms: &mut Terms, path: PathId, known: &Known) -> Option<Written>;
 
+    /// An instance of a path.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] where too much can matter.
     fn instantiate(
         &mut self,
         script: &mut Script,
@@ -111,18 +137,26 @@ pub(crate) trait Writing: Send {
         goal: &Goal,
     ) -> Result<(Written, Term), Error>;
 
-    fn restrict(
-        &mut self,
-        script: &mut Script,
-        written: Written,
-        goal: &Goal,
-        beside: &[(PathId, Known)],
-    ) -> Result<(), Error>;
+    /// Demands of a declared path what the goal asks of it next to known ones.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] where too much can matter.
+    fn restrict(&mut self, _: &mut Script, _: Written, _: &Goal, _: &[(PathId, Known)]) -> Result<(), Error> {
+        Ok(())
+    }
 
-    fn sweep(&mut self, script: &mut Script, path: PathId, env: &Env, goal: &Goal) -> Result<bool, Error>;
+    /// Demands that no run of a path reaches the goal.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] where too much can matter.
+    fn sweep(&mut self, _: &mut Script, _: PathId, _: &Env, _: &Goal) -> Result<bool, Error> {
+        Ok(false)
+    }
 
+    /// The symbols whose values describe a path.
     fn symbols(&self, written: Written) -> Vec<Term>;
 
+    /// The path that a model describes.
     fn decode(&self, written: Written, model: &Model) -> Option<Known>;
 
     /// That a path starts in a state: all of these.
@@ -134,24 +168,25 @@ pub(crate) trait Writing: Send {
     /// Whether two paths of a system are in the same state.
     fn same_state(&self, terms: &mut Terms, p: Written, q: Written, time: u32) -> Term;
 
+    /// A variable or label of a path's state.
+    fn leaf(&mut self, terms: &mut Terms, written: Written, time: u32, leaf: Leaf) -> Val;
+
     /// Whether a path can take an action.
-    fn enabled(&mut self, terms: &mut Terms, path: Written, time: u32, action: ActionId) -> Term;
+    fn enabled(&mut self, terms: &mut Terms, written: Written, time: u32, action: ActionId) -> Term;
 
     /// Whether whatever a path can do leads back to its state.
-    fn halted(&mut self, terms: &mut Terms, path: Written, time: u32) -> Term;
+    fn halted(&mut self, terms: &mut Terms, written: Written, time: u32) -> Term;
 
-    /// A variable or label of a path's state.
-    fn leaf(&self, terms: &mut Terms, path: Written, time: u32, leaf: Leaf) -> Val;
-
-    /// The value of a whole expression over one path's state, where there is a shorter way than through its parts.
-    fn whole(&self, terms: &mut Terms, path: Written, time: u32, expr: &Expr<PathLeaf>) -> Option<Val>;
-
-    /// The same of an atom, which is asked for again and again.
-    fn atom(
+    /// The value of a whole expression over one path's state, where there is a shorter way than through its parts; if
+    /// it is an atom, with its number, as atoms are asked for again and again.
+    fn whole(
         &mut self,
-        terms: &mut Terms,
-        path: Written,
-        time: u32,
-        atom: (FormulaId, &Expr<PathLeaf>),
-    ) -> Option<Term>;
+        _: &mut Terms,
+        _: Written,
+        _: u32,
+        _: &Expr<PathLeaf>,
+        _: Option<FormulaId>,
+    ) -> Option<Val> {
+        None
+    }
 }

@@ -78,15 +78,20 @@ pub(crate) fn quantifiers(typed: args::Quantifiers) -> Quantifiers {
     }
 }
 
-pub(crate) fn states(typed: args::States) -> States {
+pub(crate) fn states(typed: args::States) -> Option<States> {
     match typed {
-        args::States::Auto => States::Auto,
-        args::States::Onehot => States::Onehot,
-        args::States::Bitvec => States::Bitvec,
-        args::States::Int => States::Int,
-        args::States::Enum => States::Enum,
-        args::States::Real => States::Real,
+        args::States::Auto => None,
+        args::States::Onehot => Some(States::Onehot),
+        args::States::Bitvec => Some(States::Bitvec),
+        args::States::Int => Some(States::Int),
+        args::States::Enum => Some(States::Enum),
+        args::States::Real => Some(States::Real),
     }
+}
+
+/// What was asked for, as it is typed.
+pub(crate) fn states_name(states: Option<States>) -> String {
+    states.map_or_else(|| "auto".to_owned(), |states| states.to_string())
 }
 
 pub(crate) fn track(typed: args::Track) -> Track {

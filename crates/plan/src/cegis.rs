@@ -160,7 +160,7 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
         let dialogue = self.oracle.open(1, incremental)?;
         let encoder = self.encoder;
         let relevant = match level {
-            0 => encoder.relevant(&self.blocks[level], goal, self.narrowing)?,
+            0 => encoder.writer.relevant(&self.blocks[level], goal, self.narrowing)?,
             _ => Relevant::default(),
         };
         self.exact &= relevant.is_exact();
@@ -210,7 +210,7 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
                     assignment[at] = Some(decoded.ok_or_else(|| self.no_path(round))?);
                 }
                 (Some(Recipe::Instance(instance)), _) => {
-                    let Some(realized) = self.encoder.realize(path, instance, &assignment) else {
+                    let Some(realized) = self.encoder.writer.realize(path, instance, &assignment) else {
                         return Ok(None);
                     };
                     assignment[at] = Some(realized);
@@ -241,7 +241,7 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
         let (mut absolute, mut beside) = (true, Vec::new());
         for &path in &self.blocks[game.level] {
             let Some(counterexample) = &answer[usize::from(path)] else { continue };
-            let instance = self.encoder.generalize(path, counterexample, answer);
+            let instance = self.encoder.writer.generalize(path, counterexample, answer);
             let (terms, guard) = round.query.instantiate(path, &instance, &next.env, &round.against)?;
             next.guard = round.query.script.terms.and2(next.guard, guard);
             next.env[usize::from(path)] = Some(terms);
@@ -276,7 +276,7 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
         for &path in &self.blocks[level] {
             if let (Some(own), Some(terms)) = (&answer[usize::from(path)], round.first.env[usize::from(path)])
             {
-                let instance = self.encoder.generalize(path, own, answer);
+                let instance = self.encoder.writer.generalize(path, own, answer);
                 absolute &= instance.is_absolute();
                 alike.push(round.query.resembles(terms, &instance));
             }

@@ -1,6 +1,6 @@
 //! What is asked for, and what comes out.
 
-use hyperplan_encode::{self as encode, Limits};
+use hyperplan_encode::{self as encode, Limits, States};
 use hyperplan_problem::{PathId, Strategy};
 use hyperplan_solver::{self as solver, Deadline, Identity, Spec, Told};
 use std::fmt;
@@ -31,61 +31,6 @@ impl fmt::Display for Quantifiers {
     }
 }
 
-/// How states are written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum States {
-    /// hyperplan chooses.
-    Auto,
-    /// A Boolean for each state that can matter at a time.
-    Onehot,
-    /// A bit-vector for each variable.
-    Bitvec,
-    /// An integer for each variable, a real for each that is one.
-    Int,
-    /// A value of a datatype at each time.
-    Enum,
-    /// A real for each variable.
-    Real,
-}
-
-impl States {
-    pub(crate) fn wish(self) -> Option<encode::States> {
-        match self {
-            States::Auto => None,
-            States::Onehot => Some(encode::States::Onehot),
-            States::Bitvec => Some(encode::States::Bitvec),
-            States::Int => Some(encode::States::Int),
-            States::Enum => Some(encode::States::Enum),
-            States::Real => Some(encode::States::Real),
-        }
-    }
-}
-
-impl From<encode::States> for States {
-    fn from(states: encode::States) -> Self {
-        match states {
-            encode::States::Onehot => States::Onehot,
-            encode::States::Bitvec => States::Bitvec,
-            encode::States::Int => States::Int,
-            encode::States::Enum => States::Enum,
-            encode::States::Real => States::Real,
-        }
-    }
-}
-
-impl fmt::Display for States {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            States::Auto => "auto",
-            States::Onehot => "onehot",
-            States::Bitvec => "bitvec",
-            States::Int => "int",
-            States::Enum => "enum",
-            States::Real => "real",
-        })
-    }
-}
-
 /// How to solve.
 #[derive(Clone, Debug)]
 pub struct Config {
@@ -97,8 +42,8 @@ pub struct Config {
     pub cross_check: Option<Spec>,
     /// How quantifiers are decided.
     pub quantifiers: Quantifiers,
-    /// How states are written.
-    pub states: States,
+    /// How states are written; without, hyperplan chooses.
+    pub states: Option<States>,
     /// When to give up.
     pub deadline: Deadline,
     /// Whether the strategy is verified before it is returned.
@@ -122,7 +67,7 @@ impl Config {
             rivals: Vec::new(),
             cross_check: None,
             quantifiers: Quantifiers::Auto,
-            states: States::Auto,
+            states: None,
             deadline: Deadline::never(),
             verify: true,
             seed: 0,

@@ -90,7 +90,7 @@ pub(crate) fn expand<'e, 'a>(
                     next.push((env, guard));
                 }
             } else {
-                let cases = encoder.cases(path, &against)?;
+                let cases = encoder.writer.cases(path, &against)?;
                 for (env, guard) in copies {
                     for case in &cases {
                         let (terms, is_path) = direct.query.instantiate(path, case, &env, &against)?;
@@ -140,7 +140,7 @@ pub(crate) fn leading<'e, 'a>(
     goal: &Goal,
     narrowing: Narrowing,
 ) -> Result<Direct<'e, 'a>, Error> {
-    let relevant = encoder.relevant(&blocks[0], goal, narrowing)?;
+    let relevant = encoder.writer.relevant(&blocks[0], goal, narrowing)?;
     let exact = relevant.is_exact();
     let mut query = Query::new(encoder, &[], relevant);
     let mut env = query.known();

@@ -19,9 +19,9 @@ mod prepare;
 mod race;
 mod solve;
 
-pub use config::{Config, Error, Outcome, Quantifiers, Seconds, States, Verdict, Verified};
+pub use config::{Config, Error, Outcome, Quantifiers, Seconds, Verdict, Verified};
 pub use emit::{EmitConfig, Emitted, Status, Track, emit, strategy_of_model};
-pub use hyperplan_encode::Limits;
+pub use hyperplan_encode::{Limits, States};
 pub use lint::{Budget, Lints, lint, lint_systems};
 pub use minimize::{Family, Least, MinimizeError, minimize};
 pub use solve::solve;

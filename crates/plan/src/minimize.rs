@@ -286,7 +286,7 @@ fn hopeless(
     graphs: &Graphs,
 ) -> Result<bool, encode::Error> {
     let stop = || config.deadline.passed();
-    let encoder = Encoder::sharing(problem, objective, config.states.wish(), config.limits, &stop, graphs)?;
+    let encoder = Encoder::sharing(problem, objective, config.states, config.limits, &stop, graphs)?;
     let exists = objective.paths.first().is_some_and(|path| path.quantifier == Quantifier::Exists);
     if !exists || !encoder.states.is_enumerated() {
         return Ok(false);
@@ -298,7 +298,7 @@ fn hopeless(
     let leading = objective.leading_block();
     // Two steps, as most questions here are answered by the first.
     for slack in [SLACKS[0], None] {
-        let relevant = encoder.relevant(&leading, &goal, Narrowing { slack, one_run: false })?;
+        let relevant = encoder.writer.relevant(&leading, &goal, Narrowing { slack, one_run: false })?;
         if !relevant.is_hopeless() || relevant.is_exact() {
             return Ok(relevant.is_hopeless());
         }

@@ -15,7 +15,7 @@ pub(crate) fn no_dead_ends(encoder: &Encoder<'_>, oracle: &mut Oracle<'_>) -> Re
         if !encoder.system(path).is_finite() {
             continue;
         }
-        let Some(script) = encoder.stuck(path) else { continue };
+        let Some(script) = encoder.writer.stuck(path) else { continue };
         let mut dialogue = oracle.open(1, false)?;
         if oracle.check(&mut dialogue, &script)? {
             return Err(Stop::Unknown(format!(

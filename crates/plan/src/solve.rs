@@ -1,12 +1,12 @@
 //! From an objective to a verified answer.
 
 use crate::cegis::{Assignment, Cegis};
-use crate::config::{Config, Error, Outcome, Quantifiers, Seconds, States, Verdict, Verified};
+use crate::config::{Config, Error, Outcome, Quantifiers, Seconds, Verdict, Verified};
 use crate::direct;
 use crate::oracle::{Oracle, Stop};
 use crate::prepare::{decided, no_dead_ends, without_paths};
 use crate::race::race;
-use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Narrowing};
+use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Narrowing, States};
 use hyperplan_problem::{Objective, PathId, Problem, Quantifier, Strategy};
 use hyperplan_solver::{Spec, Told};
 use hyperplan_verify as verify;
@@ -40,8 +40,8 @@ pub(crate) fn solve_sharing(
         return race(problem, objective, config);
     }
     match attempt(problem, objective, config, graphs) {
-        Err(Error::Encode(error @ encode::Error::TooLarge { .. })) if config.states == States::Auto => {
-            let symbolic = Config { states: States::Bitvec, ..config.clone() };
+        Err(Error::Encode(error @ encode::Error::TooLarge { .. })) if config.states.is_none() => {
+            let symbolic = Config { states: Some(States::Bitvec), ..config.clone() };
             let mut outcome = attempt(problem, objective, &symbolic, graphs)?;
             outcome
                 .notes
@@ -60,7 +60,7 @@ fn attempt(
 ) -> Result<Outcome, Error> {
     let start = Instant::now();
     let stop = || config.deadline.passed();
-    let (wish, limits) = (config.states.wish(), config.limits);
+    let (wish, limits) = (config.states, config.limits);
     let encoder = Encoder::sharing(problem, objective, wish, limits, &stop, graphs)?;
     if encoder.states.is_arithmetic() && config.solver == Spec::Builtin {
         return Err(needs_arithmetic(&encoder));
@@ -113,7 +113,7 @@ fn needs_arithmetic(encoder: &Encoder<'_>) -> Error {
     let systems = encoder.objective.paths.iter().map(|path| &encoder.problem.systems[path.system]);
     let what = match systems.into_iter().find(|system| !system.is_finite()) {
         Some(system) => format!("system {} has variables without bounds, which", system.name),
-        None => format!("--states {}", States::from(encoder.states)),
+        None => format!("--states {}", encoder.states),
     };
     Error::Unsupported(format!(
         "{what} takes a solver for integers and reals, such as --solver z3, cvc5 or yices; the builtin solver has none"
@@ -137,7 +137,7 @@ fn unknown(objective: &Objective, encoder: &Encoder<'_>, config: &Config) -> Out
         quantifiers,
         because: (objective.blocks().len() == 1)
             .then_some("there is one block of quantifiers, so one query decides"),
-        states: States::from(encoder.states),
+        states: encoder.states,
         iterations: 0,
         told: Told::default(),
         seconds: Seconds::default(),
@@ -267,7 +267,8 @@ fn conclude(encoder: &Encoder<'_>, found: Option<&Assignment>, outcome: &mut Out
     outcome.witness = found.map(|known| {
         let trace = |path: PathId| known[usize::from(path)].as_ref().map(|known| known.trace(path));
         for path in objective.leading_block() {
-            let picked = known[usize::from(path)].as_ref().is_some_and(|k| encoder.picks_outcomes(path, k));
+            let picked =
+                known[usize::from(path)].as_ref().is_some_and(|k| encoder.writer.picks_outcomes(path, k));
             if exists && picked {
                 outcome.notes.push(format!(
                     "{0} relies on outcomes that its actions might not have; `exists {0}` picks them too",
@@ -326,7 +327,7 @@ fn defeated(encoder: &Encoder<'_>, config: &Config, strategy: &Strategy) -> Resu
     let want = leading(objective) == Quantifier::Exists;
     let mut known: Assignment = vec![None; objective.paths.len()];
     for trace in &strategy.traces {
-        known[usize::from(trace.path)] = encoder.known(trace);
+        known[usize::from(trace.path)] = encoder.writer.known(trace);
     }
     if blocks.len() < 2 || strategy.traces.iter().any(|t| known[usize::from(t.path)].is_none()) {
         // No path at all, or nothing left to choose: the checker's word stands.

@@ -171,10 +171,6 @@ impl Writer for Enumerated<'_> {
             steps.any(|(&state, &action)| run.graph.of_action(state, action).count() > 1)
         })
     }
-
-    fn stuck(&self, _: PathId) -> Option<Script> {
-        None
-    }
 }
 
 /// Paths of one query whose states are written one by one.
@@ -209,17 +205,24 @@ impl<'e, 'a> EnumeratedQuery<'e, 'a> {
         self.relevance.found().game().filter(|game| is(game)).cloned()
     }
 
-    /// An expression over the path's state, by the value that it has in each state.
+    /// An expression over the path's state, by the value that it has in each state; of an atom these are kept.
     fn by_state(
-        &self,
+        &mut self,
         terms: &mut Terms,
         written: Written,
         time: u32,
-        truth: bool,
-        value: impl Fn(StateIx) -> i64,
+        expr: &Expr<PathLeaf>,
+        atom: Option<FormulaId>,
     ) -> Val {
-        let layer = &self.paths[written].layers[time as usize];
-        if truth {
+        let path = &self.paths[written];
+        let (system, layer) = (self.system(path), &path.layers[time as usize]);
+        let value = |state| value(system, &path.graph, expr, state);
+        if let Some(atom) = atom {
+            let truth = self.truth.entry(atom).or_insert_with(|| vec![None; path.graph.len()]);
+            let mut holds = |state: StateIx| *truth[state as usize].get_or_insert_with(|| value(state) != 0);
+            return Val::Bool(layer.any(terms, &mut holds));
+        }
+        if is_truth_value(system, expr) {
             return Val::Bool(layer.any(terms, |state| value(state) != 0));
         }
         let cases = layer.states.iter().zip(&layer.terms).map(|(&state, &here)| (value(state), here));
@@ -339,43 +342,30 @@ impl Writing for EnumeratedQuery<'_, '_> {
         terms.and(&parts)
     }
 
-    fn enabled(&mut self, terms: &mut Terms, path: Written, time: u32, action: ActionId) -> Term {
-        let path = &self.paths[path];
+    fn leaf(&mut self, terms: &mut Terms, written: Written, time: u32, leaf: Leaf) -> Val {
+        let leaf = PathLeaf::State(self.paths[written].path, leaf);
+        self.by_state(terms, written, time, &Expr::Leaf(leaf), None)
+    }
+
+    fn enabled(&mut self, terms: &mut Terms, written: Written, time: u32, action: ActionId) -> Term {
+        let path = &self.paths[written];
         path.layers[time as usize].any(terms, |state| path.graph.enables(state, action))
     }
 
-    fn halted(&mut self, terms: &mut Terms, path: Written, time: u32) -> Term {
-        let path = &self.paths[path];
+    fn halted(&mut self, terms: &mut Terms, written: Written, time: u32) -> Term {
+        let path = &self.paths[written];
         path.layers[time as usize].any(terms, |state| path.graph.halts(state))
     }
 
-    fn leaf(&self, terms: &mut Terms, written: Written, time: u32, leaf: Leaf) -> Val {
-        let path = &self.paths[written];
-        let system = self.system(path);
-        let value = |state| eval_in(system, &Expr::Leaf(leaf), path.graph.codes(state));
-        self.by_state(terms, written, time, is_truth(system, leaf), value)
-    }
-
-    fn whole(&self, terms: &mut Terms, written: Written, time: u32, expr: &Expr<PathLeaf>) -> Option<Val> {
-        let path = &self.paths[written];
-        let system = self.system(path);
-        let value = |state| value(system, &path.graph, expr, state);
-        Some(self.by_state(terms, written, time, is_truth_value(system, expr), value))
-    }
-
-    fn atom(
+    fn whole(
         &mut self,
         terms: &mut Terms,
         written: Written,
         time: u32,
-        (id, expr): (FormulaId, &Expr<PathLeaf>),
-    ) -> Option<Term> {
-        let path = &self.paths[written];
-        let system = self.system(path);
-        let truth = self.truth.entry(id).or_insert_with(|| vec![None; path.graph.len()]);
-        Some(path.layers[time as usize].any(terms, |state| {
-            *truth[state as usize].get_or_insert_with(|| value(system, &path.graph, expr, state) != 0)
-        }))
+        expr: &Expr<PathLeaf>,
+        atom: Option<FormulaId>,
+    ) -> Option<Val> {
+        Some(self.by_state(terms, written, time, expr, atom))
     }
 }
 

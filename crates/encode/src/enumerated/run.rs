@@ -41,7 +41,7 @@ impl OnRun<'_, '_, '_> {
 
     /// The other paths' leaves at the time.
     fn others(&mut self) -> AtTime<'_, '_> {
-        AtTime { task: self.task, env: self.env, writing: &mut *self.query, time: self.time }
+        AtTime { task: self.task, env: self.env, writing: &mut *self.query, time: self.time, atom: None }
     }
 }
 

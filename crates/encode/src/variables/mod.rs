@@ -9,10 +9,8 @@ use crate::Error;
 use crate::names::{Copies, Names};
 use crate::value::{Leaves, Val, is, same};
 use crate::writing::{Bound, Env, Paths, Writer, Writing, Written};
-use hyperplan_problem::{ActionId, Expr, FormulaId, Leaf, Mode, PathId, PathLeaf, State, System, Trace};
-use hyperplan_relevance::{
-    Goal, Instance, Known, Move, Narrowing, Numbering, Relevant, Start, Task, cases, generalize,
-};
+use hyperplan_problem::{ActionId, Leaf, Mode, PathId, State, System, Trace};
+use hyperplan_relevance::{Goal, Instance, Known, Move, Numbering, Relevant, Start, Task, cases, generalize};
 use hyperplan_smt::{Model, Script, Term, Terms};
 use hyperplan_space::{Commands, Graph, LIVE, Letter, MAX_COMMANDS, StateIx, code, holds_in};
 pub(crate) use path::Numbers;
@@ -117,10 +115,6 @@ impl Numbering for ByCommand<'_> {
 }
 
 impl Writer for ByVariable<'_> {
-    fn relevant(&self, _: &[PathId], _: &Goal, _: Narrowing) -> Result<Relevant, Error> {
-        Ok(Relevant::default())
-    }
-
     fn begin<'e>(
         &'e self,
         _: &[Option<Known>],
@@ -265,14 +259,6 @@ impl Writing for VariableQuery<'_, '_> {
         Ok((self.paths.push(path), guard))
     }
 
-    fn restrict(&mut self, _: &mut Script, _: Written, _: &Goal, _: &[(PathId, Known)]) -> Result<(), Error> {
-        Ok(())
-    }
-
-    fn sweep(&mut self, _: &mut Script, _: PathId, _: &Env, _: &Goal) -> Result<bool, Error> {
-        Ok(false)
-    }
-
     fn symbols(&self, written: Written) -> Vec<Term> {
         self.paths[written].symbols(self.commands(written))
     }
@@ -296,6 +282,10 @@ impl Writing for VariableQuery<'_, '_> {
         terms.and(&parts)
     }
 
+    fn leaf(&mut self, terms: &mut Terms, path: Written, time: u32, leaf: Leaf) -> Val {
+        InState { system: self.system(path), state: self.state(path, time) }.leaf(terms, &leaf)
+    }
+
     fn enabled(&mut self, terms: &mut Terms, path: Written, time: u32, action: ActionId) -> Term {
         let enabled = self.enabled_commands(terms, path, time);
         let own: Vec<Term> = self.commands(path).of_action(action).map(|at| enabled[at]).collect();
@@ -305,17 +295,5 @@ impl Writing for VariableQuery<'_, '_> {
     fn halted(&mut self, terms: &mut Terms, path: Written, time: u32) -> Term {
         let enabled = self.enabled_commands(terms, path, time);
         halted(self.commands(path), terms, self.system(path), self.state(path, time), &enabled)
-    }
-
-    fn leaf(&self, terms: &mut Terms, path: Written, time: u32, leaf: Leaf) -> Val {
-        InState { system: self.system(path), state: self.state(path, time) }.leaf(terms, &leaf)
-    }
-
-    fn whole(&self, _: &mut Terms, _: Written, _: u32, _: &Expr<PathLeaf>) -> Option<Val> {
-        None
-    }
-
-    fn atom(&mut self, _: &mut Terms, _: Written, _: u32, _: (FormulaId, &Expr<PathLeaf>)) -> Option<Term> {
-        None
     }
 }

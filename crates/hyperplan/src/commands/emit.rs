@@ -73,7 +73,7 @@ pub(super) fn common(args: &args::Emit, date: &str) -> Outcome<EmitConfig> {
 }
 
 /// The ways of writing that were asked for.
-fn encodings(args: &args::Emit) -> impl Iterator<Item = (Quantifiers, States)> {
+fn encodings(args: &args::Emit) -> impl Iterator<Item = (Quantifiers, Option<States>)> {
     args.quantifiers.iter().flat_map(|&quantifiers| {
         args.states.iter().map(move |&states| (config::quantifiers(quantifiers), config::states(states)))
     })
@@ -122,7 +122,7 @@ impl Name<'_> {
             name += &format!("-{constant}={value}");
         }
         if self.args.states.len() > 1 {
-            name += &format!("-{}", config.states);
+            name += &format!("-{}", config::states_name(config.states));
         }
         if self.args.quantifiers.len() > 1 {
             name += &format!("-{}", config.quantifiers);

@@ -58,7 +58,7 @@ struct Work<'a> {
     family: Family,
     layout: Layout,
     date: String,
-    states: Vec<plan::States>,
+    states: Vec<Option<plan::States>>,
     quantifiers: Vec<plan::Quantifiers>,
     /// How benchmarks are emitted, but for that.
     common: EmitConfig,
@@ -85,7 +85,7 @@ impl<'a> Work<'a> {
         })?;
         // Without a choice there are benchmarks of several logics.
         let states = match args.states.as_slice() {
-            [States::Auto] => vec![plan::States::Onehot, plan::States::Bitvec],
+            [States::Auto] => vec![Some(plan::States::Onehot), Some(plan::States::Bitvec)],
             chosen => once(chosen).into_iter().map(config::states).collect(),
         };
         let quantifiers = match args.quantifiers.as_slice() {

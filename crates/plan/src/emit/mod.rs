@@ -6,13 +6,13 @@ mod model;
 mod tape;
 
 use crate::cegis::Cegis;
-use crate::config::{Config, Error, Quantifiers, States, Verdict};
+use crate::config::{Config, Error, Quantifiers, Verdict};
 use crate::direct;
 use crate::oracle::{Oracle, Stop};
 use crate::prepare::decided;
 use crate::solve::solve;
 use dialect::Dialect;
-use hyperplan_encode::{Encoder, Goal, Limits, Narrowing};
+use hyperplan_encode::{Encoder, Goal, Limits, Narrowing, States};
 use hyperplan_problem::{Mode, Objective, PathId, Problem, Quantifier};
 use hyperplan_smt::{Ask, Features, Header, Script, WriteOptions, write_header, write_script};
 use hyperplan_solver::{Deadline, Spec};
@@ -43,8 +43,8 @@ pub struct EmitConfig {
     pub solver: Option<Spec>,
     /// How quantifiers are written; [`Quantifiers::Cegis`] is a dialogue.
     pub quantifiers: Quantifiers,
-    /// How states are written.
-    pub states: States,
+    /// How states are written; without, hyperplan chooses.
+    pub states: Option<States>,
     /// The track.
     pub track: Track,
     /// The `:status`; without, it is found out by solving.
@@ -70,7 +70,7 @@ impl EmitConfig {
         EmitConfig {
             solver: None,
             quantifiers: Quantifiers::Auto,
-            states: States::Auto,
+            states: None,
             track: Track::Single,
             status: None,
             date: date.into(),
@@ -145,9 +145,8 @@ pub fn emit(problem: &Problem, objective: &Objective, config: &EmitConfig) -> Re
     // A core is about everything that was said, whether it can matter or not.
     let prune = config.limits.prune && config.track != Track::UnsatCore;
     let limits = Limits { prune, ..config.limits };
-    let emitted = settled(problem, objective, config.states.wish(), limits, &stop, |encoder| {
-        build(encoder, config, &dialect)
-    });
+    let emitted =
+        settled(problem, objective, config.states, limits, &stop, |encoder| build(encoder, config, &dialect));
     emitted.map_err(|error| match error {
         Error::Encode(hyperplan_encode::Error::Interrupted) => {
             Error::Late(config.deadline.reason().to_owned())
@@ -160,7 +159,7 @@ pub fn emit(problem: &Problem, objective: &Objective, config: &EmitConfig) -> Re
 fn settled<T>(
     problem: &Problem,
     objective: &Objective,
-    wish: Option<hyperplan_encode::States>,
+    wish: Option<States>,
     limits: Limits,
     stop: hyperplan_encode::Stop<'_>,
     with: impl FnOnce(&Encoder<'_>) -> Result<T, Error>,
@@ -250,9 +249,18 @@ fn build(encoder: &Encoder<'_>, config: &EmitConfig, dialect: &Dialect) -> Resul
         bare: !config.comments,
         ..WriteOptions::default()
     };
-    let states = States::from(encoder.states);
     notes.extend(changes);
-    Ok(Emitted { body, options, logic, status, quantifiers, states, symbols, assertions, notes })
+    Ok(Emitted {
+        body,
+        options,
+        logic,
+        status,
+        quantifiers,
+        states: encoder.states,
+        symbols,
+        assertions,
+        notes,
+    })
 }
 
 /// How quantifiers are written, and whether that fits the track.

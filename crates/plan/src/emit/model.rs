@@ -1,9 +1,9 @@
 //! From a model of an emitted query back to paths.
 
 use super::settled;
-use crate::config::{Error, States};
+use crate::config::Error;
 use crate::direct;
-use hyperplan_encode::{Encoder, Goal, Limits, Narrowing};
+use hyperplan_encode::{Encoder, Goal, Limits, Narrowing, States};
 use hyperplan_problem::{Objective, PathId, Problem, Quantifier, Strategy};
 use hyperplan_smt::{Model, Term};
 use hyperplan_solver::{Deadline, PrintedModel};
@@ -29,7 +29,7 @@ pub fn strategy_of_model(
             let stop = || deadline.passed();
             // What cannot be written so was not written so.
             let encoder =
-                settled(problem, objective, states.wish(), limits, &stop, |encoder| read(encoder, model));
+                settled(problem, objective, Some(states), limits, &stop, |encoder| read(encoder, model));
             readings.extend(encoder.ok());
         }
     }

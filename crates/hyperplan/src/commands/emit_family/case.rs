@@ -2,6 +2,7 @@
 
 use super::emit::LARGEST;
 use super::{Note, Work};
+use crate::config;
 use crate::failure::{self, Failure, Outcome};
 use crate::store::write_whole;
 use hyperplan_family::{
@@ -29,7 +30,7 @@ pub(super) struct One<'a> {
 /// How a benchmark is written.
 #[derive(Clone, Copy)]
 struct Encoding {
-    states: plan::States,
+    states: Option<plan::States>,
     quantifiers: plan::Quantifiers,
 }
 
@@ -136,7 +137,8 @@ impl One<'_> {
             if self.done.contains(&instance) {
                 continue;
             }
-            let (states, quantifiers) = (encoding.states.to_string(), encoding.quantifiers.to_string());
+            let (states, quantifiers) =
+                (config::states_name(encoding.states), encoding.quantifiers.to_string());
             let about = About { instance, case: self.case, horizon, steps, states, quantifiers };
             self.benchmark(&problem, &file, encoding, status, about)?;
         }
@@ -253,7 +255,7 @@ enum Found {
 
 impl Encoding {
     fn instance(self, name: &str) -> String {
-        format!("{name}-{}-{}", self.states, self.quantifiers)
+        format!("{name}-{}-{}", config::states_name(self.states), self.quantifiers)
     }
 }
 
