@@ -4,39 +4,10 @@ use crate::unroll::AtomTerms;
 use crate::value::{Leaves, Val, translate};
 use crate::writing::{Env, Writing, Written, at};
 use hyperplan_problem::{ActionId, Expr, FormulaId, PathId, PathLeaf};
-use hyperplan_relevance::Task;
+use hyperplan_relevance::{Task, only_path};
 use hyperplan_smt::{Term, Terms};
 
-/// Atoms over one choice of paths.
-pub(crate) struct Atoms<'b, 'e> {
-    pub(crate) task: &'b Task<'b>,
-    pub(crate) env: &'b Env,
-    pub(crate) writing: &'b mut (dyn Writing + 'e),
-}
-
-impl AtomTerms for Atoms<'_, '_> {
-    fn atom(&mut self, terms: &mut Terms, (id, expr): (FormulaId, &Expr<PathLeaf>), time: u32) -> Term {
-        let Atoms { task, env, .. } = *self;
-        let atom = Some(id);
-        translate(terms, expr, &mut AtTime { task, env, writing: self.writing, time, atom }).truth()
-    }
-}
-
-/// The path whose state alone an expression reads, if there is one.
-pub(crate) fn only_path(expr: &Expr<PathLeaf>) -> Option<PathId> {
-    let mut path = None;
-    let mut only = true;
-    expr.for_each_leaf(&mut |leaf| match *leaf {
-        PathLeaf::State(p, _) | PathLeaf::Enabled(p, _) | PathLeaf::Halted(p) => {
-            only &= path.is_none_or(|known| known == p);
-            path = Some(p);
-        }
-        PathLeaf::Took(..) | PathLeaf::SameAction(..) | PathLeaf::SameState(..) => only = false,
-    });
-    path.filter(|_| only)
-}
-
-/// The leaves of atoms at a time.
+/// Atoms over one choice of paths, at a time.
 pub(crate) struct AtTime<'b, 'e> {
     pub(crate) task: &'b Task<'b>,
     pub(crate) env: &'b Env,
@@ -46,7 +17,19 @@ pub(crate) struct AtTime<'b, 'e> {
     pub(crate) atom: Option<FormulaId>,
 }
 
-impl AtTime<'_, '_> {
+impl AtomTerms for AtTime<'_, '_> {
+    fn atom(&mut self, terms: &mut Terms, (id, expr): (FormulaId, &Expr<PathLeaf>), time: u32) -> Term {
+        (self.time, self.atom) = (time, Some(id));
+        translate(terms, expr, self).truth()
+    }
+}
+
+impl<'b, 'e> AtTime<'b, 'e> {
+    /// Atoms at any time.
+    pub(crate) fn new(task: &'b Task<'b>, env: &'b Env, writing: &'b mut (dyn Writing + 'e)) -> Self {
+        AtTime { task, env, writing, time: 0, atom: None }
+    }
+
     fn same_action(&self, terms: &mut Terms, p: Written, q: Written, actions: &[ActionId]) -> Term {
         let Some(step) = (self.time as usize).checked_sub(1) else { return Term::TRUE };
         let both = |&action: &ActionId| {

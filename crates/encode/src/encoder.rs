@@ -3,8 +3,8 @@
 use crate::enumerated::Enumerated;
 use crate::variables::{ByVariable, Numbers};
 use crate::writing::Writer;
-use hyperplan_problem::{Objective, PathId, Problem, System};
-use hyperplan_relevance::{self as relevance, Arena, Limits, Stop, Task};
+use hyperplan_problem::{Objective, PathId, Problem};
+use hyperplan_relevance::{Arena, Error, Limits, Stop, Task};
 use hyperplan_space::{Graph, Graphs};
 use std::fmt;
 use std::sync::Arc;
@@ -51,69 +51,7 @@ impl States {
     }
 }
 
-/// Why an objective cannot be encoded as asked.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Error {
-    /// A path is too long.
-    #[error("path {path} would have {steps} steps; more than {limit} are not supported")]
-    HorizonTooLong {
-        /// The path variable.
-        path: String,
-        /// Its horizon.
-        steps: u64,
-        /// The limit.
-        limit: u64,
-    },
-    /// A budget is exceeded.
-    #[error("{what}: more than {limit}")]
-    TooLarge {
-        /// What there is too much of.
-        what: String,
-        /// The limit.
-        limit: usize,
-    },
-    /// A universally quantified path has too many cases to be expanded.
-    #[error("path {path} has more than {limit} cases; use --quantifiers cegis")]
-    TooManyCases {
-        /// The path variable.
-        path: String,
-        /// The limit.
-        limit: usize,
-    },
-    /// The caller asked to stop.
-    #[error("interrupted")]
-    Interrupted,
-    /// States are to be enumerated, but there are too many.
-    #[error("system {system} has too many states to enumerate; use --states bitvec")]
-    NotEnumerable {
-        /// The system.
-        system: String,
-    },
-    /// A system has integers or reals without bounds.
-    #[error("system {system} has variables without bounds, which takes --states int or real")]
-    Unbounded {
-        /// The system.
-        system: String,
-    },
-    /// A system is about integers in a way that reals cannot express.
-    #[error("{what}, which reals cannot express; use --states int")]
-    NotReal {
-        /// What it has.
-        what: String,
-    },
-}
-
-impl From<relevance::Error> for Error {
-    fn from(error: relevance::Error) -> Self {
-        match error {
-            relevance::Error::TooLarge { what, limit } => Error::TooLarge { what, limit },
-            relevance::Error::TooManyCases { path, limit } => Error::TooManyCases { path, limit },
-            relevance::Error::Interrupted => Error::Interrupted,
-        }
-    }
-}
-
-/// What does not depend on the query.
+/// What does not depend on the query: an objective, and how it is going to be written.
 pub struct Encoder<'a> {
     /// The problem.
     pub problem: &'a Problem,
@@ -121,7 +59,8 @@ pub struct Encoder<'a> {
     pub objective: &'a Objective,
     /// How states are written.
     pub states: States,
-    pub(crate) task: Task<'a>,
+    /// The objective with its horizons.
+    pub task: Task<'a>,
     /// The states of each path's system, where they were enumerated.
     graphs: TiVec<PathId, Option<Arc<Graph>>>,
     /// How states are written, and what comes of that.
@@ -156,8 +95,7 @@ impl<'a> Encoder<'a> {
         stop: Stop<'a>,
         graphs: &Graphs,
     ) -> Result<Self, Error> {
-        let horizons = horizons(objective, &limits)?;
-        let task = Task { problem, objective, horizons, limits, stop };
+        let task = Task::new(problem, objective, limits, stop)?;
         let graphs = explore(&task, wish, graphs)?;
         let finite = objective.paths.iter().all(|path| problem.systems[path.system].is_finite());
         let all: Option<TiVec<PathId, Arc<Graph>>> = graphs.iter().cloned().collect();
@@ -186,32 +124,12 @@ impl<'a> Encoder<'a> {
         Ok(Encoder { problem, objective, states, task, graphs, writer })
     }
 
-    /// The number of steps of a path.
-    #[must_use]
-    pub fn horizon(&self, path: PathId) -> u32 {
-        self.task.horizon(path)
-    }
-
-    /// The system of a path.
-    #[must_use]
-    pub fn system(&self, path: PathId) -> &'a System {
-        self.task.system(path)
-    }
-
     /// Whether a path's system has a path that is long enough (for ever, in bounded mode); `None` where its states
     /// were not enumerated.
     #[must_use]
     pub fn has_path(&self, path: PathId) -> Option<bool> {
         let graph = self.graphs[path].as_ref()?;
         Some(graph.initial.iter().any(|&state| self.task.lasts(graph, state, 0)))
-    }
-
-    /// Whether so many copies of the formula may be made on account of a path.
-    ///
-    /// # Errors
-    /// [`Error::TooManyCases`] beyond the limit.
-    pub fn allow_cases(&self, path: PathId, copies: usize) -> Result<(), Error> {
-        Ok(self.task.allow_cases(path, copies)?)
     }
 }
 
@@ -240,21 +158,4 @@ fn explore(
         all.push(graph);
     }
     Ok(all)
-}
-
-/// The number of steps of each path; a path that is not read has none.
-fn horizons(objective: &Objective, limits: &Limits) -> Result<TiVec<PathId, u32>, Error> {
-    hyperplan_horizon::horizons(objective)
-        .iter_enumerated()
-        .map(|(path, horizon)| {
-            let steps = horizon.steps.unwrap_or(0);
-            u32::try_from(steps).ok().filter(|_| steps <= limits.horizon).ok_or_else(|| {
-                Error::HorizonTooLong {
-                    path: objective.paths[path].name.clone(),
-                    steps,
-                    limit: limits.horizon,
-                }
-            })
-        })
-        .collect()
 }

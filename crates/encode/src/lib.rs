@@ -26,9 +26,9 @@ mod value;
 mod variables;
 mod writing;
 
-pub use encoder::{Encoder, Error, States};
-pub use hyperplan_relevance::{Goal, Instance, Known, Limits, Narrowing, Relevant, Stop};
+pub use encoder::{Encoder, States};
+pub use hyperplan_relevance::{Error, Goal, Instance, Known, Limits, Narrowing, Relevant, Stop};
 pub use hyperplan_space::Graphs;
 pub use names::Copies;
 pub use query::Query;
-pub use writing::{Bound, Env, Writer, Written};
+pub use writing::{Bound, Env, Writer, Writing, Written};

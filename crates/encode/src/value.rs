@@ -4,9 +4,9 @@
 //! integer or real term where they are not. The conditions of a list of cases exclude each other and cover everything *on the assumption that
 //! the path is a path*, which every use is guarded by.
 
-use hyperplan_problem::{Comparison, Expr, TupleSet, Type, Value};
+use hyperplan_problem::{Comparison, Expr, TupleSet, Value};
 use hyperplan_smt::{Rational, Sort, Term, Terms};
-use hyperplan_space::{bounds, code};
+use hyperplan_space::code;
 use std::collections::BTreeMap;
 
 /// The value of an expression at one time.
@@ -47,32 +47,6 @@ pub(crate) fn constant(value: i64) -> Val {
 pub(crate) fn width(lo: i64, hi: i64) -> u32 {
     let bits = |v: i64| if v < 0 { 65 - (!v).leading_zeros() } else { 65 - v.leading_zeros() };
     bits(lo).max(bits(hi))
-}
-
-/// The sort of a variable of a finite type as a bit-vector.
-pub(crate) fn bits_sort(ty: &Type) -> Sort {
-    match (ty, bounds(ty)) {
-        (Type::Bool, _) => Sort::Bool,
-        (_, Some((lo, hi))) => Sort::BitVec(width(lo, hi)),
-        (_, None) => number_sort(ty),
-    }
-}
-
-/// The sort of a variable as an integer or real.
-pub(crate) fn number_sort(ty: &Type) -> Sort {
-    match ty {
-        Type::Bool => Sort::Bool,
-        Type::Range { .. } | Type::Enum(_) | Type::Int => Sort::Int,
-        Type::Real => Sort::Real,
-    }
-}
-
-/// The sort of a variable as a real.
-pub(crate) fn real_sort(ty: &Type) -> Sort {
-    match ty {
-        Type::Bool => Sort::Bool,
-        Type::Range { .. } | Type::Enum(_) | Type::Int | Type::Real => Sort::Real,
-    }
 }
 
 /// A fraction as the terms have it.

@@ -3,46 +3,26 @@
 //! A [`Writer`] knows one objective, and what its paths can be; it is chosen where the encoder is built. A [`Writing`]
 //! belongs to one query and keeps the terms of the paths in it, which others know by number only.
 
-use crate::Error;
 use crate::names::Copies;
 use crate::value::Val;
+use derive_more::{From, Into};
 use hyperplan_problem::{ActionId, Expr, FormulaId, Leaf, PathId, PathLeaf, State, Trace};
+use hyperplan_relevance::Error;
 use hyperplan_relevance::{Goal, Instance, Known, Narrowing, Relevant};
 use hyperplan_smt::{Model, Script, Term, Terms};
 use std::sync::Arc;
+use typed_index_collections::TiVec;
 
-/// The terms of one path in a query.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Written(u32);
+/// The terms of one path in a query, by number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, From, Into)]
+pub struct Written(usize);
 
 /// The paths over which the formula is unrolled, by path variable.
 pub type Env = Vec<Option<Written>>;
 
-/// Terms of paths, by [`Written`].
-#[derive(Debug)]
-pub(crate) struct Paths<P>(Vec<P>);
-
-impl<P> Paths<P> {
-    pub(crate) fn new() -> Self {
-        Paths(Vec::new())
-    }
-
-    pub(crate) fn push(&mut self, path: P) -> Written {
-        self.0.push(path);
-        Written(self.0.len() as u32 - 1)
-    }
-
-    pub(crate) fn all_of(&self, env: &Env) -> Vec<Option<&P>> {
-        env.iter().map(|path| path.map(|path| &self[path])).collect()
-    }
-}
-
-impl<P> std::ops::Index<Written> for Paths<P> {
-    type Output = P;
-
-    fn index(&self, path: Written) -> &P {
-        &self.0[path.0 as usize]
-    }
+/// The terms of the paths of an environment.
+pub(crate) fn all_of<'p, P>(paths: &'p TiVec<Written, P>, env: &Env) -> Vec<Option<&'p P>> {
+    env.iter().map(|path| path.map(|path| &paths[path])).collect()
 }
 
 /// The path that inputs or a formula refer to: the planner names only paths that it has.
@@ -107,27 +87,18 @@ pub trait Writer: Send + Sync {
     }
 }
 
-/// The paths of one query. What is not said here [`crate::Query`] says.
+/// The paths of one query. What cannot be told because too much can matter is an [`Error::TooLarge`].
 pub trait Writing: Send {
-    /// A path that the solver chooses.
-    ///
-    /// # Errors
-    /// [`Error::TooLarge`] where too much can matter.
+    /// A path that the solver chooses to reach a goal.
     fn declare(&mut self, script: &mut Script, path: PathId, goal: &Goal) -> Result<Written, Error>;
 
     /// A path under a quantifier.
-    ///
-    /// # Errors
-    /// [`Error::TooLarge`] where too much can matter.
     fn bind(&mut self, terms: &mut Terms, path: PathId, goal: &Goal) -> Result<Bound, Error>;
 
     /// A known path, as constants.
     fn fix(&mut self, terms: &mut Terms, path: PathId, known: &Known) -> Option<Written>;
 
-    /// An instance of a path.
-    ///
-    /// # Errors
-    /// [`Error::TooLarge`] where too much can matter.
+    /// An instance of a path whose player has the goal: the path, and the condition that it is one.
     fn instantiate(
         &mut self,
         script: &mut Script,
@@ -137,18 +108,14 @@ pub trait Writing: Send {
         goal: &Goal,
     ) -> Result<(Written, Term), Error>;
 
-    /// Demands of a declared path what the goal asks of it next to known ones.
-    ///
-    /// # Errors
-    /// [`Error::TooLarge`] where too much can matter.
+    /// Demands of a declared path what the goal asks of it next to known ones: states from which it cannot be met
+    /// are excluded at once. The solver would find out, but by search.
     fn restrict(&mut self, _: &mut Script, _: Written, _: &Goal, _: &[(PathId, Known)]) -> Result<(), Error> {
         Ok(())
     }
 
-    /// Demands that no run of a path reaches the goal.
-    ///
-    /// # Errors
-    /// [`Error::TooLarge`] where too much can matter.
+    /// Demands that no choice of a path, the last of all, reaches its player's goal, whatever it is; `env` has the
+    /// paths before it. False, with nothing of use demanded, where that takes too much or states are not enumerated.
     fn sweep(&mut self, _: &mut Script, _: PathId, _: &Env, _: &Goal) -> Result<bool, Error> {
         Ok(false)
     }
@@ -156,7 +123,7 @@ pub trait Writing: Send {
     /// The symbols whose values describe a path.
     fn symbols(&self, written: Written) -> Vec<Term>;
 
-    /// The path that a model describes.
+    /// The path that a model describes; `None` if it is none, which a right model cannot cause.
     fn decode(&self, written: Written, model: &Model) -> Option<Known>;
 
     /// That a path starts in a state: all of these.

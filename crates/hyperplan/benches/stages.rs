@@ -89,8 +89,11 @@ fn unroll(criterion: &mut Criterion, name: &str, _: &Case, problem: &Problem) {
     let declared = || {
         let mut query = Query::new(&encoder, &[], Relevant::default());
         let paths = objective(problem).paths.keys();
-        let env =
-            paths.map(|path| Some(query.declare(path, &goal).expect("it is within the budget"))).collect();
+        let env = paths
+            .map(|path| {
+                Some(query.paths.declare(&mut query.script, path, &goal).expect("it is within the budget"))
+            })
+            .collect();
         (query, env)
     };
     criterion.bench_function(&format!("unroll/{name}"), |b| {

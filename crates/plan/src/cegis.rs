@@ -168,7 +168,7 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
         let mut env = query.known();
         let mut recipes = vec![None; env.len()];
         for &path in &self.blocks[level] {
-            env[usize::from(path)] = Some(query.declare(path, goal)?);
+            env[usize::from(path)] = Some(query.paths.declare(&mut query.script, path, goal)?);
             recipes[usize::from(path)] = Some(Recipe::Declared);
         }
         let formula = &encoder.objective.formula;
@@ -206,7 +206,7 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
             let path = PathId::from(at);
             match (recipe, game.env[at]) {
                 (Some(Recipe::Declared), Some(terms)) => {
-                    let decoded = round.query.decode(terms, model);
+                    let decoded = round.query.paths.decode(terms, model);
                     assignment[at] = Some(decoded.ok_or_else(|| self.no_path(round))?);
                 }
                 (Some(Recipe::Instance(instance)), _) => {
@@ -237,13 +237,15 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
 
     /// Adds the instance that a counterexample stands for.
     fn add(&mut self, round: &mut Round<'_, 'a>, game: &Game, answer: &Assignment) -> Result<(), Stop> {
+        let query = &mut round.query;
         let mut next = game.clone();
         let (mut absolute, mut beside) = (true, Vec::new());
         for &path in &self.blocks[game.level] {
             let Some(counterexample) = &answer[usize::from(path)] else { continue };
             let instance = self.encoder.writer.generalize(path, counterexample, answer);
-            let (terms, guard) = round.query.instantiate(path, &instance, &next.env, &round.against)?;
-            next.guard = round.query.script.terms.and2(next.guard, guard);
+            let (terms, guard) =
+                query.paths.instantiate(&mut query.script, path, &instance, &next.env, &round.against)?;
+            next.guard = query.script.terms.and2(next.guard, guard);
             next.env[usize::from(path)] = Some(terms);
             absolute &= instance.is_absolute();
             next.recipes[usize::from(path)] = Some(Recipe::Instance(instance));
@@ -253,13 +255,14 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
         if absolute && game.guard == Term::TRUE && next.level == self.blocks.len() {
             for &path in &self.blocks[game.level - 1] {
                 if let Some(terms) = game.env[usize::from(path)] {
-                    round.query.restrict(terms, &round.goal, &beside)?;
+                    query.paths.restrict(&mut query.script, terms, &round.goal, &beside)?;
                 }
             }
         }
         if next.level < self.blocks.len() {
             for &path in &self.blocks[next.level] {
-                next.env[usize::from(path)] = Some(round.query.declare(path, &round.goal)?);
+                next.env[usize::from(path)] =
+                    Some(query.paths.declare(&mut query.script, path, &round.goal)?);
                 next.recipes[usize::from(path)] = Some(Recipe::Declared);
             }
             next.level += 1;
@@ -305,7 +308,7 @@ impl Round<'_, '_> {
         for game in std::iter::once(&self.first).chain(&self.games) {
             for (path, recipe) in game.env.iter().zip(&game.recipes) {
                 if let (Some(path), Some(Recipe::Declared)) = (*path, recipe) {
-                    symbols.extend(self.query.symbols(path));
+                    symbols.extend(self.query.paths.symbols(path));
                 }
             }
         }

@@ -29,7 +29,11 @@ pub(crate) fn keep<'e, 'a>(
     for (depth, block) in blocks.iter().enumerate().skip(1) {
         let own = depth % 2 == 0;
         for &path in block {
-            let bound = direct.query.bind(path, if own { &goal } else { &against })?;
+            let bound = direct.query.paths.bind(
+                &mut direct.query.script.terms,
+                path,
+                if own { &goal } else { &against },
+            )?;
             env[usize::from(path)] = Some(bound.path);
             open.push((own, bound));
         }
@@ -63,7 +67,7 @@ pub(crate) fn sweep<'e, 'a>(
     let [path] = last.as_slice() else { return Ok(None) };
     let (mut direct, rest) = demanding(encoder, blocks, want, narrowing)?;
     let against = rest.opposed(&encoder.objective.formula);
-    let swept = direct.query.sweep(*path, &direct.env, &against)?;
+    let swept = direct.query.paths.sweep(&mut direct.query.script, *path, &direct.env, &against)?;
     Ok(swept.then_some(direct))
 }
 
@@ -86,19 +90,26 @@ pub(crate) fn expand<'e, 'a>(
             let mut next = Vec::new();
             if depth % 2 == 0 {
                 for (mut env, guard) in copies {
-                    env[usize::from(path)] = Some(direct.query.declare(path, &rest)?);
+                    env[usize::from(path)] =
+                        Some(direct.query.paths.declare(&mut direct.query.script, path, &rest)?);
                     next.push((env, guard));
                 }
             } else {
                 let cases = encoder.writer.cases(path, &against)?;
                 for (env, guard) in copies {
                     for case in &cases {
-                        let (terms, is_path) = direct.query.instantiate(path, case, &env, &against)?;
+                        let (terms, is_path) = direct.query.paths.instantiate(
+                            &mut direct.query.script,
+                            path,
+                            case,
+                            &env,
+                            &against,
+                        )?;
                         let mut env = env.clone();
                         env[usize::from(path)] = Some(terms);
                         next.push((env, direct.query.script.terms.and2(guard, is_path)));
                     }
-                    encoder.allow_cases(path, next.len())?;
+                    encoder.task.allow_cases(path, next.len())?;
                 }
             }
             copies = next;
@@ -145,7 +156,7 @@ pub(crate) fn leading<'e, 'a>(
     let mut query = Query::new(encoder, &[], relevant);
     let mut env = query.known();
     for &path in &blocks[0] {
-        env[usize::from(path)] = Some(query.declare(path, goal)?);
+        env[usize::from(path)] = Some(query.paths.declare(&mut query.script, path, goal)?);
     }
     Ok(Direct { query, env, exact })
 }
@@ -173,12 +184,12 @@ impl Direct<'_, '_> {
             return Ok(None);
         }
         let wanted: Vec<Term> =
-            self.env.iter().flatten().flat_map(|&path| self.query.symbols(path)).collect();
+            self.env.iter().flatten().flat_map(|&path| self.query.paths.symbols(path)).collect();
         let model = oracle.model(&mut dialogue, script, wanted)?;
         let mut known = vec![None; self.env.len()];
         for (at, path) in self.env.iter().enumerate() {
             if let Some(path) = *path {
-                let decoded = self.query.decode(path, &model);
+                let decoded = self.query.paths.decode(path, &model);
                 known[at] = Some(decoded.ok_or_else(|| oracle.wrong(&dialogue, "it describes no path"))?);
             }
         }

@@ -12,7 +12,7 @@ pub(crate) fn no_dead_ends(encoder: &Encoder<'_>, oracle: &mut Oracle<'_>) -> Re
     }
     for path in encoder.objective.paths.keys() {
         // In a system with infinitely many states a path has its horizon's steps, whatever may follow.
-        if !encoder.system(path).is_finite() {
+        if !encoder.task.system(path).is_finite() {
             continue;
         }
         let Some(script) = encoder.writer.stuck(path) else { continue };
@@ -21,7 +21,7 @@ pub(crate) fn no_dead_ends(encoder: &Encoder<'_>, oracle: &mut Oracle<'_>) -> Re
             return Err(Stop::Unknown(format!(
                 "system {} is too large to enumerate and has states without transitions, so it is not known which \
                  paths go on for ever; use `absorb`, or `within K`",
-                encoder.system(path).name
+                encoder.task.system(path).name
             )));
         }
     }
@@ -35,7 +35,7 @@ pub(crate) fn without_paths(encoder: &Encoder<'_>, oracle: &mut Oracle<'_>) -> R
             Some(known) => known,
             None => {
                 let mut query = Query::new(encoder, &[], Relevant::default());
-                query.declare(path, &Goal::new(&encoder.objective.formula, true))?;
+                query.paths.declare(&mut query.script, path, &Goal::new(&encoder.objective.formula, true))?;
                 let mut dialogue = oracle.open(1, false)?;
                 oracle.check(&mut dialogue, &query.script)?
             }

@@ -130,7 +130,7 @@ fn unknown(objective: &Objective, encoder: &Encoder<'_>, config: &Config) -> Out
     Outcome {
         verdict: Verdict::Unknown,
         reason: None,
-        horizons: horizons.iter_enumerated().map(|(p, h)| h.steps.map(|_| encoder.horizon(p))).collect(),
+        horizons: horizons.iter_enumerated().map(|(p, h)| h.steps.map(|_| encoder.task.horizon(p))).collect(),
         witness: None,
         verified: None,
         solver: Oracle::new(config).identity(),

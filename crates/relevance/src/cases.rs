@@ -8,10 +8,11 @@
 
 use crate::goal::Goal;
 use crate::instance::{Instance, Move, Start};
+use crate::reads::in_state;
 use crate::residual::{FALSE, MAX_ATOMS, Now, Residual, Residuals};
 use crate::task::{Error, Task};
 use hyperplan_problem::{ActionId, Expr, FormulaId, Node, PathId, PathLeaf};
-use hyperplan_space::{Graph, Letter, StateIx, eval, eval_in};
+use hyperplan_space::{Graph, Letter, StateIx, eval};
 
 /// How the outcomes of actions are numbered in the moves of an instance.
 pub trait Numbering {
@@ -139,11 +140,6 @@ impl<'a> Search<'a> {
         let system = self.task.system(self.path);
         let value = eval(expr, &mut |leaf| {
             let value = match *leaf {
-                PathLeaf::State(_, leaf) => {
-                    state.map(|s| eval_in(system, &Expr::Leaf(leaf), self.graph.codes(s)))
-                }
-                PathLeaf::Enabled(_, action) => state.map(|s| i64::from(self.graph.enables(s, action))),
-                PathLeaf::Halted(_) => state.map(|s| i64::from(self.graph.halts(s))),
                 PathLeaf::Took(_, wanted) => match movement {
                     None => Some(0),
                     Some(Move::Act(action, _)) => Some(i64::from(action == wanted)),
@@ -151,6 +147,9 @@ impl<'a> Search<'a> {
                 },
                 PathLeaf::SameAction(p, q) => self.same(if p == self.path { q } else { p }, movement, time),
                 PathLeaf::SameState(..) => None,
+                PathLeaf::State(..) | PathLeaf::Enabled(..) | PathLeaf::Halted(_) => {
+                    state.and_then(|s| in_state(system, self.graph, leaf, s))
+                }
             };
             known &= value.is_some();
             value.unwrap_or(0)

@@ -18,13 +18,11 @@ pub struct Goal {
 
 impl Goal {
     /// That the whole formula has this truth value.
-    #[must_use]
     pub fn new(formula: &Formula, want: bool) -> Goal {
         Goal { parts: conjuncts(formula, formula.root(), want), all: true }
     }
 
     /// That this goal is not met: what the other player wants.
-    #[must_use]
     pub fn opposed(&self, formula: &Formula) -> Goal {
         match self.parts.as_slice() {
             [(only, want)] => Goal { parts: conjuncts(formula, *only, !want), all: true },
@@ -33,7 +31,6 @@ impl Goal {
     }
 
     /// The parts of a conjunction, each by itself; else the goal.
-    #[must_use]
     pub fn conjuncts(&self) -> Vec<Goal> {
         if !self.all {
             return vec![self.clone()];
@@ -42,7 +39,6 @@ impl Goal {
     }
 
     /// The least number of its subformulas, and the goal in the language's words.
-    #[must_use]
     pub fn described(&self, problem: &Problem, objective: &Objective) -> (usize, String) {
         let number = self.parts.iter().map(|(id, _)| usize::from(*id)).min().unwrap_or(0);
         let part = |&(id, want): &(FormulaId, bool)| {
@@ -54,19 +50,16 @@ impl Goal {
     }
 
     /// Nothing at all.
-    #[must_use]
     pub fn nothing() -> Goal {
         Goal { parts: Vec::new(), all: true }
     }
 
     /// Whether nothing is wanted.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.all && self.parts.is_empty()
     }
 
     /// The parts that read only these paths, which can be demanded of them alone, and the rest.
-    #[must_use]
     pub fn split(&self, formula: &Formula, paths: &dyn Fn(PathId) -> bool) -> (Goal, Goal) {
         let (own, rest) = if self.all {
             self.parts.iter().partition(|part| reads_only(formula, part.0, paths))

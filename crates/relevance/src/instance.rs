@@ -50,7 +50,6 @@ pub struct Instance {
 
 impl Instance {
     /// Whether it refers to no other path.
-    #[must_use]
     pub fn is_absolute(&self) -> bool {
         matches!(self.start, Start::State(_)) && self.moves.iter().all(|m| matches!(m, Move::Act(..)))
     }
@@ -69,7 +68,6 @@ pub struct Known {
 
 impl Known {
     /// As a trace of the typed problem.
-    #[must_use]
     pub fn trace(&self, path: PathId) -> Trace {
         Trace { path, states: self.states.clone(), actions: self.actions.clone() }
     }
@@ -78,7 +76,6 @@ impl Known {
 /// The instance that a counterexample stands for: in terms of the paths before it where the objective compares them and
 /// they agree. Beside these it describes exactly the counterexample. Steps can be followed whole ([`Move::Same`]) of
 /// the paths that `shares` says.
-#[must_use]
 pub fn generalize(
     objective: &Objective,
     path: PathId,

@@ -11,13 +11,11 @@ pub struct Layers {
 
 impl Layers {
     /// Whether a state can matter at a time.
-    #[must_use]
     pub fn contains(&self, time: usize, state: StateIx) -> bool {
         self.at[time].binary_search(&state).is_ok()
     }
 
     /// Whether no run is left.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.at.iter().any(Vec::is_empty)
     }

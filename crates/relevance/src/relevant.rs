@@ -35,20 +35,17 @@ pub struct Relevant {
 
 impl Relevant {
     /// Whether no run was lost by narrowing, so that nothing found means that there is nothing.
-    #[must_use]
     pub fn is_exact(&self) -> bool {
         !self.lossy
     }
 
     /// Whether it is plain that no choice of the leading block reaches its player's goal: nothing of some path can
     /// matter. Every quantifier must range over some path.
-    #[must_use]
     pub fn is_hopeless(&self) -> bool {
         self.declared.values().any(|layers| layers.is_empty())
     }
 
     /// The game, if that is about these paths.
-    #[must_use]
     pub fn game(&self) -> Option<&Arc<Game>> {
         self.game.as_ref()
     }
@@ -88,13 +85,11 @@ pub struct Relevance<'e, 'a> {
 
 impl<'e, 'a> Relevance<'e, 'a> {
     /// Beside known paths, given what was found out before.
-    #[must_use]
     pub fn new(arena: &'e Arena<'a>, fixed: Vec<Option<Run>>, found: Relevant) -> Self {
         Relevance { arena, fixed, found, narrowing: Narrowing::default(), least: 0 }
     }
 
     /// What was found so far.
-    #[must_use]
     pub fn found(&self) -> &Relevant {
         &self.found
     }

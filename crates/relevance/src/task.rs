@@ -1,5 +1,6 @@
 //! What is to be decided: an objective, how far each of its paths is read, and the budgets.
 
+use hyperplan_horizon::{Horizon, horizons};
 use hyperplan_problem::{Mode, Objective, PathId, Problem, System};
 use hyperplan_space::{Graph, LIVE, StateIx};
 use std::sync::Arc;
@@ -45,9 +46,19 @@ impl Default for Limits {
     }
 }
 
-/// Why there is no answer.
+/// Why an objective cannot be decided as asked.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Error {
+    /// A path is too long.
+    #[error("path {path} would have {steps} steps; more than {limit} are not supported")]
+    HorizonTooLong {
+        /// The path variable.
+        path: String,
+        /// Its horizon.
+        steps: u64,
+        /// The limit.
+        limit: u64,
+    },
     /// A budget is exceeded.
     #[error("{what}: more than {limit}")]
     TooLarge {
@@ -56,8 +67,8 @@ pub enum Error {
         /// The limit.
         limit: usize,
     },
-    /// A path has too many cases to be expanded.
-    #[error("path {path} has more than {limit} cases")]
+    /// A universally quantified path has too many cases to be expanded.
+    #[error("path {path} has more than {limit} cases; use --quantifiers cegis")]
     TooManyCases {
         /// The path variable.
         path: String,
@@ -67,6 +78,24 @@ pub enum Error {
     /// The caller asked to stop.
     #[error("interrupted")]
     Interrupted,
+    /// States are to be enumerated, but there are too many.
+    #[error("system {system} has too many states to enumerate; use --states bitvec")]
+    NotEnumerable {
+        /// The system.
+        system: String,
+    },
+    /// A system has integers or reals without bounds.
+    #[error("system {system} has variables without bounds, which takes --states int or real")]
+    Unbounded {
+        /// The system.
+        system: String,
+    },
+    /// A system is about integers in a way that reals cannot express.
+    #[error("{what}, which reals cannot express; use --states int")]
+    NotReal {
+        /// What it has.
+        what: String,
+    },
 }
 
 /// Asked now and then while something large is built: whether to stop.
@@ -80,7 +109,7 @@ pub struct Task<'a> {
     /// The objective.
     pub objective: &'a Objective,
     /// How many steps of each path are read.
-    pub horizons: TiVec<PathId, u32>,
+    horizons: TiVec<PathId, u32>,
     /// The budgets.
     pub limits: Limits,
     /// Whether to stop.
@@ -88,39 +117,53 @@ pub struct Task<'a> {
 }
 
 impl<'a> Task<'a> {
+    /// An objective with the horizons of its paths; one that is not read has none.
+    ///
+    /// # Errors
+    /// [`Error::HorizonTooLong`].
+    pub fn new(
+        problem: &'a Problem,
+        objective: &'a Objective,
+        limits: Limits,
+        stop: Stop<'a>,
+    ) -> Result<Self, Error> {
+        let steps = |(path, horizon): (PathId, &Horizon)| {
+            let (steps, limit) = (horizon.steps.unwrap_or(0), limits.horizon);
+            let path = || objective.paths[path].name.clone();
+            let fits = u32::try_from(steps).ok().filter(|_| steps <= limit);
+            fits.ok_or_else(|| Error::HorizonTooLong { path: path(), steps, limit })
+        };
+        let horizons = horizons(objective).iter_enumerated().map(steps).collect::<Result<_, _>>()?;
+        Ok(Task { problem, objective, horizons, limits, stop })
+    }
+
     /// The number of steps of a path.
-    #[must_use]
     pub fn horizon(&self, path: PathId) -> u32 {
         self.horizons[path]
     }
 
     /// The last time that any path is read at.
-    #[must_use]
     pub fn end(&self) -> u32 {
         self.horizons.iter().copied().max().unwrap_or(0)
     }
 
     /// The system of a path.
-    #[must_use]
     pub fn system(&self, path: PathId) -> &'a System {
         &self.problem.systems[self.objective.paths[path].system]
     }
 
     /// Whether two paths are of one system.
-    #[must_use]
     pub fn same_system(&self, p: PathId, q: PathId) -> bool {
         self.objective.paths[p].system == self.objective.paths[q].system
     }
 
     /// Whether a time is the last position of every trace.
-    #[must_use]
     pub fn is_last(&self, time: u32) -> bool {
         self.objective.mode == Mode::Within(time)
     }
 
     /// Whether a state allows enough further steps at a time: any number in bounded mode, all that are left under
     /// `within`.
-    #[must_use]
     pub fn lasts(&self, graph: &Graph, state: StateIx, time: u32) -> bool {
         let rank = graph.rank[state as usize];
         match self.objective.mode {

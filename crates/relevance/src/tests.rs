@@ -18,9 +18,7 @@ pub(crate) fn problem(text: &str) -> Problem {
 /// The first objective of a problem.
 pub(crate) fn arena(problem: &Problem) -> Arena<'_> {
     let objective = &problem.objectives[0];
-    let horizons = hyperplan_horizon::horizons(objective);
-    let horizons = horizons.iter().map(|horizon| horizon.steps.unwrap_or(0) as u32).collect();
-    let task = Task { problem, objective, horizons, limits: Limits::default(), stop: &|| false };
+    let task = Task::new(problem, objective, Limits::default(), &|| false).expect("it is short");
     let graph = |path: PathId| Arc::new(Graph::explore(task.system(path), 1000).expect("it is small"));
     let graphs = objective.paths.keys().map(graph).collect();
     Arena { task, graphs }

@@ -4,7 +4,6 @@ use crate::eval::{bounds, eval_in};
 use crate::graph::{Graph, LIVE, Letter, StateIx, TooLarge};
 use hyperplan_problem::{ActionId, Clause, Expr, Leaf, System, Update, VarId};
 use rustc_hash::FxHashMap;
-use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
 impl Graph {
@@ -319,59 +318,49 @@ fn number_letters(system: &System, starts: &[u32], edges: &Edges) -> (Letters, T
 
 /// The longest path from each state: states are peeled off once all their successors are.
 fn ranks(starts: &[u32], transitions: &[(Letter, StateIx)]) -> Vec<u32> {
-    let states = starts.len() - 1;
-    let mut rank = vec![LIVE; states];
     let mut left: Vec<u32> = starts.windows(2).map(|w| w[1] - w[0]).collect();
-    let mut queue: VecDeque<StateIx> = (0..states as StateIx).filter(|&s| left[s as usize] == 0).collect();
+    let mut rank = vec![LIVE; left.len()];
+    let mut queue: Vec<StateIx> = (0..left.len() as StateIx).filter(|&s| left[s as usize] == 0).collect();
     if queue.is_empty() {
         return rank;
     }
-    let predecessors = predecessors(starts, transitions);
-    let mut longest = vec![0u32; states];
-    while let Some(state) = queue.pop_front() {
-        let own = longest[state as usize];
-        rank[state as usize] = own;
-        for &before in predecessors.of(state) {
-            longest[before as usize] = longest[before as usize].max(own + 1);
-            left[before as usize] -= 1;
-            if left[before as usize] == 0 {
-                queue.push_back(before);
+    let (ends, before) = predecessors(starts, transitions);
+    let mut longest = vec![0u32; left.len()];
+    let mut next = 0;
+    while let Some(&state) = queue.get(next) {
+        next += 1;
+        let (state, own) = (state as usize, longest[state as usize]);
+        rank[state] = own;
+        for &before in &before[ends[state] as usize..ends[state + 1] as usize] {
+            let at = before as usize;
+            longest[at] = longest[at].max(own + 1);
+            left[at] -= 1;
+            if left[at] == 0 {
+                queue.push(before);
             }
         }
     }
     rank
 }
 
-/// Who leads to each state, once per transition.
-struct Predecessors {
-    starts: Vec<u32>,
-    states: Vec<StateIx>,
-}
-
-impl Predecessors {
-    fn of(&self, state: StateIx) -> &[StateIx] {
-        let at = state as usize;
-        &self.states[self.starts[at] as usize..self.starts[at + 1] as usize]
-    }
-}
-
-fn predecessors(starts: &[u32], transitions: &[(Letter, StateIx)]) -> Predecessors {
+/// Who leads to each state, once per transition: where the predecessors of each state start, and they.
+fn predecessors(starts: &[u32], transitions: &[(Letter, StateIx)]) -> (Vec<u32>, Vec<StateIx>) {
     let count = starts.len() - 1;
-    let mut ends = vec![0u32; count + 1];
+    let mut ends = vec![0u32; count + 2];
     for &(_, next) in transitions {
-        ends[next as usize + 1] += 1;
+        ends[next as usize + 2] += 1;
     }
     for at in 0..count {
-        ends[at + 1] += ends[at];
+        ends[at + 2] += ends[at + 1];
     }
-    let result_starts = ends.clone();
+    // Filling in a state's predecessors moves the start of its own to that of the next state's.
     let mut states = vec![0; transitions.len()];
     for state in 0..count {
         for &(_, next) in &transitions[starts[state] as usize..starts[state + 1] as usize] {
-            let slot = &mut ends[next as usize];
+            let slot = &mut ends[next as usize + 1];
             states[*slot as usize] = state as StateIx;
             *slot += 1;
         }
     }
-    Predecessors { starts: result_starts, states }
+    (ends, states)
 }

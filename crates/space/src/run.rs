@@ -35,16 +35,17 @@ impl Run {
         Some(Run::new(graph.clone(), states, letters))
     }
 
-    /// The first steps of a trace; `None` where they are no path, or there are fewer.
+    /// The path with these states and the actions between them; `None` where it is none.
     #[must_use]
-    pub fn of_trace(graph: &Arc<Graph>, trace: &Trace, steps: usize) -> Option<Run> {
-        let (mut states, mut letters) = (vec![graph.initial_state(trace.states.first()?)?], Vec::new());
-        for (action, next) in trace.actions.get(..steps)?.iter().zip(trace.states.get(1..)?) {
-            let (letter, to) = graph.step_to(*states.last()?, *action, next)?;
+    pub fn of(graph: &Arc<Graph>, states: &[State], actions: &[ActionId]) -> Option<Run> {
+        let start = graph.initial_state(states.first()?)?;
+        let (mut at, mut letters) = (start, Vec::with_capacity(actions.len()));
+        for (action, next) in actions.iter().zip(&states[1..]) {
+            let (letter, to) = graph.step_to(at, *action, next)?;
             letters.push(letter);
-            states.push(to);
+            at = to;
         }
-        (letters.len() == steps).then(|| Run::new(graph.clone(), states, letters))
+        Run::replay(graph, start, letters)
     }
 
     /// As a trace of the typed problem.

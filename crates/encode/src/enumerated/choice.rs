@@ -2,7 +2,7 @@
 
 use crate::names::Names;
 use hyperplan_smt::{Enumeration, Model, Sort, Term, Terms};
-use hyperplan_space::{Graph, Letter, StateIx};
+use hyperplan_space::Graph;
 
 /// How a choice among the states, or the letters, of a system is written.
 #[derive(Clone, Copy, Debug)]
@@ -34,32 +34,6 @@ impl Codings {
             states: Coding::new(terms, &format!("{system}.State"), states),
             letters: Coding::new(terms, &format!("{system}.Letter"), letters),
         }
-    }
-
-    /// Which of some states it is.
-    pub(crate) fn state(
-        &self,
-        terms: &mut Terms,
-        names: &Names<'_>,
-        graph: &Graph,
-        states: &[StateIx],
-        place: &Place,
-    ) -> Choice {
-        let whole = format!("{}.at", names.path);
-        Choice::new(terms, self.states, states, place, |state| names.state(graph, state), &whole)
-    }
-
-    /// Which of some letters it is.
-    pub(crate) fn letter(
-        &self,
-        terms: &mut Terms,
-        names: &Names<'_>,
-        graph: &Graph,
-        letters: &[Letter],
-        place: &Place,
-    ) -> Choice {
-        let whole = format!("{}.do", names.path);
-        Choice::new(terms, self.letters, letters, place, |letter| names.letter(graph, letter), &whole)
     }
 }
 

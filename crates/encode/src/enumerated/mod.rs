@@ -7,20 +7,20 @@ mod path;
 mod run;
 mod sweep;
 
-use crate::Error;
 use crate::names::{Copies, Names};
 use crate::value::{Val, merge};
-use crate::writing::{Bound, Env, Paths, Writer, Writing, Written};
+use crate::writing::{Bound, Env, Writer, Writing, Written, all_of};
 use choice::Codings;
 use hyperplan_problem::{
     ActionId, Expr, FormulaId, Leaf, PathId, PathLeaf, State, System, SystemId, Trace, Value,
 };
+use hyperplan_relevance::Error;
 use hyperplan_relevance::{
     Arena, Game, Goal, Instance, Known, Layers, Move, Narrowing, Numbering, Relevance, Relevant, Start,
-    cases, generalize, leading,
+    cases, generalize, in_state, leading,
 };
 use hyperplan_smt::{Model, Script, Term, Terms};
-use hyperplan_space::{Graph, Letter, Run, StateIx, eval, eval_in};
+use hyperplan_space::{Graph, Letter, Run, StateIx, eval};
 use instance::{Building, Instances};
 use path::{Builder, EnumeratedPath};
 use run::is_truth;
@@ -59,15 +59,7 @@ impl<'a> Enumerated<'a> {
 
     /// A known path through its graph; `None` where it is none.
     fn run(&self, path: PathId, known: &Known) -> Option<Run> {
-        let graph = &self.arena.graphs[path];
-        let mut at = graph.initial_state(&known.states[0])?;
-        let (start, mut letters) = (at, Vec::with_capacity(known.actions.len()));
-        for (&action, &number) in known.actions.iter().zip(&known.numbers) {
-            let (letter, next) = exactly(graph, at, action, number)?;
-            letters.push(letter);
-            at = next;
-        }
-        Run::replay(graph, start, letters)
+        Run::of(&self.arena.graphs[path], &known.states, &known.actions)
     }
 
     fn known_run(&self, path: PathId, run: &Run) -> Known {
@@ -101,7 +93,7 @@ impl Numbering for AsInGraph {
 
 impl Writer for Enumerated<'_> {
     fn relevant(&self, block: &[PathId], goal: &Goal, narrowing: Narrowing) -> Result<Relevant, Error> {
-        Ok(leading(&self.arena, block, goal, narrowing)?)
+        leading(&self.arena, block, goal, narrowing)
     }
 
     fn begin<'e>(
@@ -119,19 +111,20 @@ impl Writer for Enumerated<'_> {
             codings: self.codings(terms),
             instances: Instances::default(),
             truth: FxHashMap::default(),
-            paths: Paths::new(),
+            paths: TiVec::new(),
             copies: copies.clone(),
         })
     }
 
     fn known(&self, trace: &Trace) -> Option<Known> {
         let steps = self.arena.task.horizon(trace.path) as usize;
-        let run = Run::of_trace(&self.arena.graphs[trace.path], trace, steps)?;
+        let (states, actions) = (trace.states.get(..=steps)?, trace.actions.get(..steps)?);
+        let run = Run::of(&self.arena.graphs[trace.path], states, actions)?;
         Some(self.known_run(trace.path, &run))
     }
 
     fn cases(&self, path: PathId, goal: &Goal) -> Result<Vec<Instance>, Error> {
-        Ok(cases(&self.arena.task, &self.arena.graphs[path], path, goal, &AsInGraph)?)
+        cases(&self.arena.task, &self.arena.graphs[path], path, goal, &AsInGraph)
     }
 
     fn generalize(&self, path: PathId, counterexample: &Known, before: &[Option<Known>]) -> Instance {
@@ -181,7 +174,7 @@ pub(crate) struct EnumeratedQuery<'e, 'a> {
     instances: Instances,
     /// Whether each state satisfies an atom that reads one path's state, by atom.
     truth: FxHashMap<FormulaId, Vec<Option<bool>>>,
-    paths: Paths<EnumeratedPath>,
+    paths: TiVec<Written, EnumeratedPath>,
     copies: Arc<Copies>,
 }
 
@@ -216,7 +209,9 @@ impl<'e, 'a> EnumeratedQuery<'e, 'a> {
     ) -> Val {
         let path = &self.paths[written];
         let (system, layer) = (self.system(path), &path.layers[time as usize]);
-        let value = |state| value(system, &path.graph, expr, state);
+        // What reads more than the state is not asked for.
+        let leaf = |leaf: &PathLeaf, state| in_state(system, &path.graph, leaf, state).unwrap_or(0);
+        let value = |state| eval(expr, &mut |read| leaf(read, state));
         if let Some(atom) = atom {
             let truth = self.truth.entry(atom).or_insert_with(|| vec![None; path.graph.len()]);
             let mut holds = |state: StateIx| *truth[state as usize].get_or_insert_with(|| value(state) != 0);
@@ -243,19 +238,19 @@ impl Writing for EnumeratedQuery<'_, '_> {
                 }
             }
         }
-        Ok(self.paths.push(declared))
+        Ok(self.paths.push_and_get_key(declared))
     }
 
     fn bind(&mut self, terms: &mut Terms, path: PathId, goal: &Goal) -> Result<Bound, Error> {
         let names = self.names(path);
         let layers = self.relevance.layers(path, goal)?;
         let (path, variables, guard) = self.builder(path, &names, &layers).bind(terms)?;
-        Ok(Bound { path: self.paths.push(path), variables, guard })
+        Ok(Bound { path: self.paths.push_and_get_key(path), variables, guard })
     }
 
     fn fix(&mut self, _: &mut Terms, path: PathId, known: &Known) -> Option<Written> {
         let run = self.writer.run(path, known)?;
-        Some(self.paths.push(EnumeratedPath::fix(path, &run)))
+        Some(self.paths.push_and_get_key(EnumeratedPath::fix(path, &run)))
     }
 
     fn instantiate(
@@ -269,10 +264,10 @@ impl Writing for EnumeratedQuery<'_, '_> {
         let layers = self.relevance.layers(path, goal)?;
         let graph = &self.writer.arena.graphs[path];
         let names = self.names(path);
-        let others = self.paths.all_of(env);
+        let others = all_of(&self.paths, env);
         let mut building = Building { script, path, names: &names, graph, layers: &layers, env: &others };
         let (path, guard) = self.instances.build(&mut building, instance);
-        Ok((self.paths.push(path), guard))
+        Ok((self.paths.push_and_get_key(path), guard))
     }
 
     fn restrict(
@@ -367,16 +362,6 @@ impl Writing for EnumeratedQuery<'_, '_> {
     ) -> Option<Val> {
         Some(self.by_state(terms, written, time, expr, atom))
     }
-}
-
-/// The value in a state of an expression that [reads nothing else](crate::atom::only_path).
-fn value(system: &System, graph: &Graph, expr: &Expr<PathLeaf>, state: StateIx) -> i64 {
-    eval(expr, &mut |leaf| match *leaf {
-        PathLeaf::State(_, leaf) => eval_in(system, &Expr::Leaf(leaf), graph.codes(state)),
-        PathLeaf::Enabled(_, action) => i64::from(graph.enables(state, action)),
-        PathLeaf::Halted(_) => i64::from(graph.halts(state)),
-        PathLeaf::Took(..) | PathLeaf::SameAction(..) | PathLeaf::SameState(..) => 0,
-    })
 }
 
 /// Whether an expression over one path's state is a truth value rather than a number.

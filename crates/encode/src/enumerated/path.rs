@@ -3,9 +3,9 @@
 //! enumeration for each time (`--states enum`).
 
 use super::choice::{self, Choice, Codings, Place};
-use crate::Error;
 use crate::names::Names;
 use hyperplan_problem::{ActionId, PathId};
+use hyperplan_relevance::Error;
 use hyperplan_relevance::{Layers, LosingMove, Task};
 use hyperplan_smt::{Model, Script, Term, Terms};
 use hyperplan_space::{Graph, Letter, Run, StateIx};
@@ -131,15 +131,17 @@ impl Builder<'_, '_> {
     }
 
     fn choose_state(&self, terms: &mut Terms, time: usize, bound: bool) -> Choice {
-        let place = Place { time, bound };
-        self.codings.state(terms, self.names, self.graph, &self.layers.at[time], &place)
+        let (place, whole) = (Place { time, bound }, format!("{}.at", self.names.path));
+        let name = |state| self.names.state(self.graph, state);
+        Choice::new(terms, self.codings.states, &self.layers.at[time], &place, name, &whole)
     }
 
     /// The letters of the step after a time, and which of them it is.
     fn choose_letter(&self, terms: &mut Terms, time: usize, bound: bool) -> (Vec<Letter>, Choice) {
         let letters = letters_between(self.graph, self.layers, time);
-        let place = Place { time: time + 1, bound };
-        let choice = self.codings.letter(terms, self.names, self.graph, &letters, &place);
+        let (place, whole) = (Place { time: time + 1, bound }, format!("{}.do", self.names.path));
+        let name = |letter| self.names.letter(self.graph, letter);
+        let choice = Choice::new(terms, self.codings.letters, &letters, &place, name, &whole);
         (letters, choice)
     }
 

@@ -1,11 +1,11 @@
 //! The leaves of atoms where one path is on a run, and the others are terms.
 
 use super::EnumeratedQuery;
-use crate::atom::{AtTime, only_path};
+use crate::atom::AtTime;
 use crate::value::{Leaves, Val, constant};
 use crate::writing::{Env, at};
 use hyperplan_problem::{ActionId, Expr, Leaf, PathId, PathLeaf, System, Type};
-use hyperplan_relevance::Task;
+use hyperplan_relevance::{Task, only_path};
 use hyperplan_smt::{Term, Terms};
 use hyperplan_space::{Graph, StateIx, eval_in};
 

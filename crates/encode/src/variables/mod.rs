@@ -5,11 +5,11 @@ mod path;
 mod real;
 mod step;
 
-use crate::Error;
 use crate::names::{Copies, Names};
 use crate::value::{Leaves, Val, is, same};
-use crate::writing::{Bound, Env, Paths, Writer, Writing, Written};
+use crate::writing::{Bound, Env, Writer, Writing, Written, all_of};
 use hyperplan_problem::{ActionId, Leaf, Mode, PathId, State, System, Trace};
+use hyperplan_relevance::Error;
 use hyperplan_relevance::{Goal, Instance, Known, Move, Numbering, Relevant, Start, Task, cases, generalize};
 use hyperplan_smt::{Model, Script, Term, Terms};
 use hyperplan_space::{Commands, Graph, LIVE, Letter, MAX_COMMANDS, StateIx, code, holds_in};
@@ -122,7 +122,7 @@ impl Writer for ByVariable<'_> {
         copies: &Arc<Copies>,
         _: &mut Terms,
     ) -> Box<dyn Writing + 'e> {
-        let (paths, enabled) = (Paths::new(), FxHashMap::default());
+        let (paths, enabled) = (TiVec::new(), FxHashMap::default());
         Box::new(VariableQuery { writer: self, paths, enabled, copies: copies.clone() })
     }
 
@@ -139,9 +139,9 @@ impl Writer for ByVariable<'_> {
         let (system, commands) = (self.task.system(path), &self.rules[path].commands);
         match &self.graphs[path] {
             Some(graph) if commands.inputs.is_empty() => {
-                Ok(cases(&self.task, graph, path, goal, &ByCommand { commands, system })?)
+                cases(&self.task, graph, path, goal, &ByCommand { commands, system })
             }
-            _ => Ok(self.task.allow_cases(path, usize::MAX).map(|()| Vec::new())?),
+            _ => self.task.allow_cases(path, usize::MAX).map(|()| Vec::new()),
         }
     }
 
@@ -199,7 +199,7 @@ impl Writer for ByVariable<'_> {
 /// Paths of one query whose states are written by variable.
 struct VariableQuery<'e, 'a> {
     writer: &'e ByVariable<'a>,
-    paths: Paths<VariablePath>,
+    paths: TiVec<Written, VariablePath>,
     /// For each command whether it can be taken, by path and time.
     enabled: FxHashMap<(Written, u32), Arc<Vec<Term>>>,
     copies: Arc<Copies>,
@@ -231,17 +231,17 @@ impl VariableQuery<'_, '_> {
 impl Writing for VariableQuery<'_, '_> {
     fn declare(&mut self, script: &mut Script, path: PathId, _: &Goal) -> Result<Written, Error> {
         let names = self.copies.next(&self.writer.task, path);
-        Ok(self.paths.push(self.writer.builder(path, &names).declare(script)))
+        Ok(self.paths.push_and_get_key(self.writer.builder(path, &names).declare(script)))
     }
 
     fn bind(&mut self, terms: &mut Terms, path: PathId, _: &Goal) -> Result<Bound, Error> {
         let names = self.copies.next(&self.writer.task, path);
         let (path, variables, guard) = self.writer.builder(path, &names).bind(terms);
-        Ok(Bound { path: self.paths.push(path), variables, guard })
+        Ok(Bound { path: self.paths.push_and_get_key(path), variables, guard })
     }
 
     fn fix(&mut self, terms: &mut Terms, path: PathId, known: &Known) -> Option<Written> {
-        Some(self.paths.push(VariablePath::fix(terms, path, known)))
+        Some(self.paths.push_and_get_key(VariablePath::fix(terms, path, known)))
     }
 
     fn instantiate(
@@ -255,8 +255,8 @@ impl Writing for VariableQuery<'_, '_> {
         // No symbol is made, so the names do not matter.
         let names = Names::new(&self.writer.task, path, 0);
         let builder = self.writer.builder(path, &names);
-        let (path, guard) = builder.instantiate(&mut script.terms, instance, &self.paths.all_of(env));
-        Ok((self.paths.push(path), guard))
+        let (path, guard) = builder.instantiate(&mut script.terms, instance, &all_of(&self.paths, env));
+        Ok((self.paths.push_and_get_key(path), guard))
     }
 
     fn symbols(&self, written: Written) -> Vec<Term> {

@@ -3,9 +3,7 @@
 
 use super::step::{InState, after, enabled, enabled_with, within};
 use crate::names::Names;
-use crate::value::{
-    Val, bits_sort, choose, equal, known, member_of, number_sort, real_sort, same, translate, width,
-};
+use crate::value::{Val, choose, equal, known, member_of, same, translate, width};
 use hyperplan_problem::{ActionId, PathId, Rational, State, System, Type, Value, VarId};
 use hyperplan_relevance::{Instance, Known, Move, Start};
 use hyperplan_smt::{self as smt, Model, Script, Sort, Term, Terms};
@@ -27,10 +25,11 @@ pub(crate) enum Numbers {
 impl Numbers {
     /// The sort of a variable.
     fn sort(self, ty: &Type) -> Sort {
-        match self {
-            Numbers::Bits => bits_sort(ty),
-            Numbers::Integers => number_sort(ty),
-            Numbers::Reals => real_sort(ty),
+        match (self, ty, bounds(ty)) {
+            (_, Type::Bool, _) => Sort::Bool,
+            (Numbers::Bits, _, Some((lo, hi))) => Sort::BitVec(width(lo, hi)),
+            (Numbers::Reals, ..) | (_, Type::Real, _) => Sort::Real,
+            _ => Sort::Int,
         }
     }
 
@@ -383,10 +382,7 @@ fn one_of(terms: &mut Terms, value: &Val, range: RangeInclusive<i64>) -> Term {
 fn clip(terms: &mut Terms, value: &Val, ty: &Type) -> Val {
     let Some((lo, hi)) = bounds(ty) else { return value.clone() };
     match value {
-        Val::Bits { .. } => {
-            let Sort::BitVec(w) = bits_sort(ty) else { return value.clone() };
-            Val::Bits { term: value.bits_of_width(terms, w), lo, hi }
-        }
+        Val::Bits { .. } => Val::Bits { term: value.bits_of_width(terms, width(lo, hi)), lo, hi },
         Val::Cases(cases) => Val::Cases(cases.iter().copied().filter(|c| (lo..=hi).contains(&c.0)).collect()),
         Val::Bool(_) | Val::Number(_) => value.clone(),
     }

@@ -3,8 +3,8 @@
 //! A variable with bounds is a real that starts as one of its integers, and integer updates keep it one. Where integers
 //! have no bounds there is no list to start from, and reals know no rounding.
 
-use crate::Error;
 use hyperplan_problem::{Expr, Node, Objective, Problem, System, Type, Update};
+use hyperplan_relevance::Error;
 use hyperplan_space::bounds;
 
 /// The longest list of a variable's values: each is a disjunct.

@@ -39,7 +39,7 @@ pub(super) fn source(
     let horizons: Vec<String> = objective
         .paths
         .iter_enumerated()
-        .map(|(path, var)| format!("{} {}", var.name, encoder.horizon(path)))
+        .map(|(path, var)| format!("{} {}", var.name, encoder.task.horizon(path)))
         .collect();
     line(&format!("Horizons: {}.", horizons.join(", ")));
     line(&format!("States: {}.", states(encoder.states)));
@@ -49,7 +49,7 @@ pub(super) fn source(
     }
     let mut described: Vec<&str> = Vec::new();
     for path in objective.paths.keys() {
-        let system = encoder.system(path);
+        let system = encoder.task.system(path);
         if !described.contains(&system.name.as_str()) {
             described.push(&system.name);
             describe(system, &mut line);

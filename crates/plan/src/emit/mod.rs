@@ -181,11 +181,11 @@ fn empty(encoder: &Encoder<'_>) -> Result<Option<Quantifier>, Error> {
         match encoder.has_path(path) {
             Some(true) => {}
             Some(false) => return Ok(Some(objective.paths[path].quantifier)),
-            None if objective.mode == Mode::Bounded && encoder.system(path).is_finite() => {
+            None if objective.mode == Mode::Bounded && encoder.task.system(path).is_finite() => {
                 return Err(Error::Unsupported(format!(
                     "system {} is too large to enumerate, so it is not known which of its paths go on for ever; \
                      use `within K`",
-                    encoder.system(path).name
+                    encoder.task.system(path).name
                 )));
             }
             None => {}

@@ -83,7 +83,7 @@ fn strategy(
     }
     let trace = |&path: &PathId| {
         let declared = direct.path(path)?;
-        Some(direct.query.decode(declared, &model)?.trace(path))
+        Some(direct.query.paths.decode(declared, &model)?.trace(path))
     };
     let traces: Option<Vec<_>> = block.iter().map(trace).collect();
     let wrong = || {

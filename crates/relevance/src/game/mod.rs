@@ -69,7 +69,6 @@ pub struct LosingMove {
 impl Game {
     /// Explores and plays the game of a question about the leading path and the other, whose goal is that of the
     /// other's player. `None` where there are atoms or nodes beyond the budgets.
-    #[must_use]
     pub(crate) fn new(question: &Question<'_, 2>) -> Option<Game> {
         let (mut stages, residuals) = explore::stages(question)?;
         let lossy = play::play(&mut stages, question.slack);
@@ -90,14 +89,12 @@ impl Game {
     }
 
     /// What can matter of the leading path.
-    #[must_use]
     pub fn layers(&self) -> Layers {
         let times = self.stages.iter().take(self.horizons[0] as usize + 1);
         Layers { at: times.map(|stage| stage.living().map(|s| stage.states[s]).collect()).collect() }
     }
 
     /// What can matter of the other path to where [`Game::losing_moves`] are ruled out.
-    #[must_use]
     pub fn other_layers(&self) -> Layers {
         let states = |stage: &Stage| {
             let mut states: Vec<StateIx> = stage.open_nodes().map(|n| stage.nodes[n].other).collect();
@@ -109,14 +106,12 @@ impl Game {
     }
 
     /// The pairs that matter at a time.
-    #[must_use]
     pub fn pairs(&self, time: u32) -> FxHashSet<Pair> {
         let stage = &self.stages[time as usize];
         stage.open_nodes().map(|n| stage.nodes[n].pair()).collect()
     }
 
     /// What the leading path must not do at a time, whatever the other does.
-    #[must_use]
     pub fn closed(&self, time: u32) -> Vec<LosingMove> {
         let Some(next) = self.stages.get(time as usize + 1) else { return Vec::new() };
         let stage = &self.stages[time as usize];
@@ -132,7 +127,6 @@ impl Game {
     }
 
     /// What the leading path must not do at a time where the other may be in a node.
-    #[must_use]
     pub fn losing_moves(&self, time: u32) -> Vec<LosingMove> {
         let Some(next) = self.stages.get(time as usize + 1) else { return Vec::new() };
         let stage = &self.stages[time as usize];

@@ -1,9 +1,10 @@
 //! The atoms of a formula on the states and moves of explored paths.
 
 use super::question::{Place, Question};
+use crate::reads::in_state;
 use crate::residual::{MAX_ATOMS, Settling};
-use hyperplan_problem::{ActionId, Comparison, Expr, FormulaId, Leaf, Node, PathId, PathLeaf};
-use hyperplan_space::{Graph, StateIx, eval, eval_in};
+use hyperplan_problem::{ActionId, Comparison, Expr, FormulaId, Node, PathId, PathLeaf};
+use hyperplan_space::{Graph, StateIx, eval};
 use rustc_hash::FxHashMap;
 
 /// The values of atoms, one bit each; what is neither known nor set counts as false.
@@ -300,18 +301,13 @@ fn value<const N: usize>(
         let taken = time.checked_sub(1).and_then(|before| fixed.actions.get(before)).copied();
         Some((&fixed.graph, *fixed.states.get(time)?, taken))
     };
-    let read = |p: PathId, leaf: Leaf| {
-        let system = question.arena.task.system(p);
-        place(p).map_or(0, |(graph, state, _)| eval_in(system, &Expr::Leaf(leaf), graph.codes(state)))
-    };
     match *leaf {
-        PathLeaf::State(p, leaf) => read(p, leaf),
+        PathLeaf::State(p, _) | PathLeaf::Enabled(p, _) | PathLeaf::Halted(p) => {
+            let system = question.arena.task.system(p);
+            place(p).and_then(|(graph, state, _)| in_state(system, graph, leaf, state)).unwrap_or(0)
+        }
         PathLeaf::Took(p, wanted) => i64::from(place(p).is_some_and(|(_, _, taken)| taken == Some(wanted))),
         PathLeaf::SameAction(p, q) => i64::from(place(p).map(|x| x.2) == place(q).map(|x| x.2)),
         PathLeaf::SameState(p, q) => i64::from(place(p).map(|x| x.1) == place(q).map(|x| x.1)),
-        PathLeaf::Enabled(p, a) => {
-            i64::from(place(p).is_some_and(|(graph, state, _)| graph.enables(state, a)))
-        }
-        PathLeaf::Halted(p) => i64::from(place(p).is_some_and(|(graph, state, _)| graph.halts(state))),
     }
 }

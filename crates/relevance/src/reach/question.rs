@@ -35,7 +35,6 @@ pub(crate) struct Question<'a, const N: usize> {
 
 impl<'a, const N: usize> Question<'a, N> {
     /// The same question about another choice of paths.
-    #[must_use]
     pub(crate) fn about<const M: usize>(&self, paths: [PathId; M]) -> Question<'a, M> {
         let Question { arena, goal, fixed, declared, slack, least, one_run, budget, .. } = *self;
         let within = [None; M];

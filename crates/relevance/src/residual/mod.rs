@@ -65,7 +65,6 @@ pub struct Residuals {
 
 impl Residuals {
     /// The weakened goal. `bit` numbers the known atoms.
-    #[must_use]
     pub fn new(
         formula: &Formula,
         goal: &Goal,
@@ -88,7 +87,6 @@ impl Residuals {
     }
 
     /// Number of residuals made so far.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.shapes.len()
     }
