@@ -1,7 +1,5 @@
 //! Evaluation of terms under a model: a loop over the arena.
 
-use std::cmp::Ordering;
-
 use crate::rational::Rational;
 use crate::script::Script;
 use crate::term::{Op, Sort, Term};
@@ -50,7 +48,7 @@ pub(crate) fn apply(op: Op, sort: Sort, args: &[Value], numbers: &[u32]) -> Opti
         },
         Op::Le => match (args[0], args[1]) {
             (Value::Int(a), Value::Int(b)) => Some(Value::Bool(a <= b)),
-            (Value::Real(a), Value::Real(b)) => Some(Value::Bool(a.checked_cmp(b)? != Ordering::Greater)),
+            (Value::Real(a), Value::Real(b)) => Some(Value::Bool(a <= b)),
             _ => None,
         },
         // The divisor is positive: Euclidean division is SMT-LIB's.

@@ -66,11 +66,6 @@ struct EnumerationText {
     constructors: Vec<name::Mangled>,
 }
 
-struct StemText {
-    text: Box<str>,
-    symbol: name::Mangled,
-}
-
 /// A hash-consed arena of sort-checked terms.
 ///
 /// Children come before their parents, so that a pass over all terms is a loop over indices, and
@@ -82,7 +77,7 @@ struct StemText {
 pub struct Terms {
     pool: Pool,
     table: HashTable<Entry>,
-    stems: Vec<StemText>,
+    stems: Vec<name::Mangled>,
     stem_ids: FxHashMap<Box<str>, Stem>,
     enumerations: Vec<EnumerationText>,
     scratch: Vec<Term>,
@@ -134,7 +129,7 @@ impl Terms {
             return stem;
         }
         let stem = Stem(u32::try_from(self.stems.len()).expect("fewer than 2^32 stems"));
-        self.stems.push(StemText { text: text.into(), symbol: name::Mangled::new(text) });
+        self.stems.push(name::Mangled::new(text));
         self.stem_ids.insert(text.into(), stem);
         stem
     }
@@ -142,18 +137,12 @@ impl Terms {
     /// A stem of its own, whose symbol without a time is written exactly so.
     pub(crate) fn verbatim_stem(&mut self, name: &str) -> Stem {
         let stem = Stem(u32::try_from(self.stems.len()).expect("fewer than 2^32 stems"));
-        self.stems.push(StemText { text: name.into(), symbol: name::Mangled::verbatim(name) });
+        self.stems.push(name::Mangled::verbatim(name));
         stem
     }
 
-    /// The text of a stem.
-    #[must_use]
-    pub fn stem_text(&self, stem: Stem) -> &str {
-        &self.stems[stem.0 as usize].text
-    }
-
     pub(crate) fn mangled(&self, stem: Stem) -> &name::Mangled {
-        &self.stems[stem.0 as usize].symbol
+        &self.stems[stem.0 as usize]
     }
 
     /// The declared symbol of that stem, time and sort, printed `stem@time`. One stem and time

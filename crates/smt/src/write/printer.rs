@@ -267,8 +267,7 @@ impl Printer {
     }
 
     /// Whether the term is printed as a literal: a symbol or a name, perhaps under `not`.
-    #[must_use]
-    pub fn is_literal(&self, terms: &Terms, t: Term) -> bool {
+    fn is_literal(&self, terms: &Terms, t: Term) -> bool {
         t.is_const()
             || terms.op(t) == Op::Symbol
             || self.marks.get(t.index()).is_some_and(|mark| mark.is_named())
