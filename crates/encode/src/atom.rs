@@ -2,7 +2,7 @@
 
 use crate::unroll::AtomTerms;
 use crate::value::{Leaves, Val, translate};
-use crate::writing::{Env, Writing, Written, at};
+use crate::writing::{Env, PathIx, Writing, at};
 use hyperplan_problem::{ActionId, Expr, FormulaId, PathId, PathLeaf};
 use hyperplan_relevance::{Task, only_path};
 use hyperplan_smt::{Term, Terms};
@@ -30,7 +30,7 @@ impl<'b, 'e> AtTime<'b, 'e> {
         AtTime { task, env, writing, time: 0, atom: None }
     }
 
-    fn same_action(&self, terms: &mut Terms, p: Written, q: Written, actions: &[ActionId]) -> Term {
+    fn same_action(&self, terms: &mut Terms, p: PathIx, q: PathIx, actions: &[ActionId]) -> Term {
         let Some(step) = (self.time as usize).checked_sub(1) else { return Term::TRUE };
         let both = |&action: &ActionId| {
             let (a, b) = (self.writing.took(p, step, action), self.writing.took(q, step, action));

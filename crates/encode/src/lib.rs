@@ -31,4 +31,4 @@ pub use hyperplan_relevance::{Error, Goal, Instance, Known, Limits, Narrowing, R
 pub use hyperplan_space::Graphs;
 pub use names::Copies;
 pub use query::Query;
-pub use writing::{Bound, Env, Writer, Writing, Written};
+pub use writing::{Bound, Env, PathIx, Writer, Writing};

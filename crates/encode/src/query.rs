@@ -4,7 +4,7 @@ use crate::Encoder;
 use crate::atom::AtTime;
 use crate::names::Copies;
 use crate::unroll::Unroller;
-use crate::writing::{Env, Writing, Written};
+use crate::writing::{Env, PathIx, Writing};
 use hyperplan_relevance::{Goal, Instance, Known, Move, Relevant, Start};
 use hyperplan_smt::{Script, Term};
 use std::sync::Arc;
@@ -53,14 +53,14 @@ impl<'e, 'a> Query<'e, 'a> {
 
     /// Whether a declared path is like a counterexample: starts like it and takes the actions that the instance
     /// made of it gives outright. Used to ask for a different one.
-    pub fn resembles(&mut self, written: Written, instance: &Instance) -> Term {
+    pub fn resembles(&mut self, path: PathIx, instance: &Instance) -> Term {
         let mut parts = match &instance.start {
-            Start::State(state) => self.paths.starts(&mut self.script.terms, written, state),
+            Start::State(state) => self.paths.starts(&mut self.script.terms, path, state),
             Start::Same(_) => Vec::new(),
         };
         for (step, movement) in instance.moves.iter().enumerate() {
             if let Move::Act(action, _) = *movement {
-                parts.push(self.paths.took(written, step, action));
+                parts.push(self.paths.took(path, step, action));
             }
         }
         self.script.terms.and(&parts)

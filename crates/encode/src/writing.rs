@@ -15,25 +15,25 @@ use typed_index_collections::TiVec;
 
 /// The terms of one path in a query, by number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, From, Into)]
-pub struct Written(usize);
+pub struct PathIx(usize);
 
 /// The paths over which the formula is unrolled, by path variable.
-pub type Env = Vec<Option<Written>>;
+pub type Env = Vec<Option<PathIx>>;
 
 /// The terms of the paths of an environment.
-pub(crate) fn all_of<'p, P>(paths: &'p TiVec<Written, P>, env: &Env) -> Vec<Option<&'p P>> {
+pub(crate) fn all_of<'p, P>(paths: &'p TiVec<PathIx, P>, env: &Env) -> Vec<Option<&'p P>> {
     env.iter().map(|path| path.map(|path| &paths[path])).collect()
 }
 
 /// The path that inputs or a formula refer to: the planner names only paths that it has.
-pub(crate) fn at(env: &Env, path: PathId) -> Written {
+pub(crate) fn at(env: &Env, path: PathId) -> PathIx {
     env[usize::from(path)].expect("every path that is read was quantified before")
 }
 
 /// A path under a quantifier.
 pub struct Bound {
     /// The path.
-    pub path: Written,
+    pub path: PathIx,
     /// The bound variables.
     pub variables: Vec<Term>,
     /// The condition that they describe a path.
@@ -90,13 +90,13 @@ pub trait Writer: Send + Sync {
 /// The paths of one query. What cannot be told because too much can matter is an [`Error::TooLarge`].
 pub trait Writing: Send {
     /// A path that the solver chooses to reach a goal.
-    fn declare(&mut self, script: &mut Script, path: PathId, goal: &Goal) -> Result<Written, Error>;
+    fn declare(&mut self, script: &mut Script, path: PathId, goal: &Goal) -> Result<PathIx, Error>;
 
     /// A path under a quantifier.
     fn bind(&mut self, terms: &mut Terms, path: PathId, goal: &Goal) -> Result<Bound, Error>;
 
     /// A known path, as constants.
-    fn fix(&mut self, terms: &mut Terms, path: PathId, known: &Known) -> Option<Written>;
+    fn fix(&mut self, terms: &mut Terms, path: PathId, known: &Known) -> Option<PathIx>;
 
     /// An instance of a path whose player has the goal: the path, and the condition that it is one.
     fn instantiate(
@@ -106,11 +106,11 @@ pub trait Writing: Send {
         instance: &Instance,
         env: &Env,
         goal: &Goal,
-    ) -> Result<(Written, Term), Error>;
+    ) -> Result<(PathIx, Term), Error>;
 
     /// Demands of a declared path what the goal asks of it next to known ones: states from which it cannot be met
     /// are excluded at once. The solver would find out, but by search.
-    fn restrict(&mut self, _: &mut Script, _: Written, _: &Goal, _: &[(PathId, Known)]) -> Result<(), Error> {
+    fn restrict(&mut self, _: &mut Script, _: PathIx, _: &Goal, _: &[(PathId, Known)]) -> Result<(), Error> {
         Ok(())
     }
 
@@ -121,35 +121,35 @@ pub trait Writing: Send {
     }
 
     /// The symbols whose values describe a path.
-    fn symbols(&self, written: Written) -> Vec<Term>;
+    fn symbols(&self, path: PathIx) -> Vec<Term>;
 
     /// The path that a model describes; `None` if it is none, which a right model cannot cause.
-    fn decode(&self, written: Written, model: &Model) -> Option<Known>;
+    fn decode(&self, path: PathIx, model: &Model) -> Option<Known>;
 
     /// That a path starts in a state: all of these.
-    fn starts(&self, terms: &mut Terms, written: Written, state: &State) -> Vec<Term>;
+    fn starts(&self, terms: &mut Terms, path: PathIx, state: &State) -> Vec<Term>;
 
     /// Whether a step is made by this action.
-    fn took(&self, written: Written, step: usize, action: ActionId) -> Term;
+    fn took(&self, path: PathIx, step: usize, action: ActionId) -> Term;
 
     /// Whether two paths of a system are in the same state.
-    fn same_state(&self, terms: &mut Terms, p: Written, q: Written, time: u32) -> Term;
+    fn same_state(&self, terms: &mut Terms, p: PathIx, q: PathIx, time: u32) -> Term;
 
     /// A variable or label of a path's state.
-    fn leaf(&mut self, terms: &mut Terms, written: Written, time: u32, leaf: Leaf) -> Val;
+    fn leaf(&mut self, terms: &mut Terms, path: PathIx, time: u32, leaf: Leaf) -> Val;
 
     /// Whether a path can take an action.
-    fn enabled(&mut self, terms: &mut Terms, written: Written, time: u32, action: ActionId) -> Term;
+    fn enabled(&mut self, terms: &mut Terms, path: PathIx, time: u32, action: ActionId) -> Term;
 
     /// Whether whatever a path can do leads back to its state.
-    fn halted(&mut self, terms: &mut Terms, written: Written, time: u32) -> Term;
+    fn halted(&mut self, terms: &mut Terms, path: PathIx, time: u32) -> Term;
 
     /// The value of a whole expression over one path's state, where there is a shorter way than through its parts; if
     /// it is an atom, with its number, as atoms are asked for again and again.
     fn whole(
         &mut self,
         _: &mut Terms,
-        _: Written,
+        _: PathIx,
         _: u32,
         _: &Expr<PathLeaf>,
         _: Option<FormulaId>,

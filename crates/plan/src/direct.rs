@@ -1,7 +1,7 @@
 //! One query for the whole objective: with its quantifiers, or expanded.
 
 use crate::oracle::{Oracle, Stop};
-use hyperplan_encode::{Bound, Encoder, Env, Error, Goal, Known, Narrowing, Query, Written};
+use hyperplan_encode::{Bound, Encoder, Env, Error, Goal, Known, Narrowing, PathIx, Query};
 use hyperplan_problem::{PathId, display};
 use hyperplan_smt::{Script, Term};
 
@@ -168,7 +168,7 @@ impl Direct<'_, '_> {
     }
 
     /// A path of the leading block.
-    pub(crate) fn path(&self, path: PathId) -> Option<Written> {
+    pub(crate) fn path(&self, path: PathId) -> Option<PathIx> {
         self.env[usize::from(path)]
     }
 

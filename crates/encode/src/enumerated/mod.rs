@@ -9,7 +9,7 @@ mod sweep;
 
 use crate::names::{Copies, Names};
 use crate::value::{Val, merge};
-use crate::writing::{Bound, Env, Writer, Writing, Written, all_of};
+use crate::writing::{Bound, Env, PathIx, Writer, Writing, all_of};
 use choice::Codings;
 use hyperplan_problem::{
     ActionId, Expr, FormulaId, Leaf, PathId, PathLeaf, State, System, SystemId, Trace, Value,
@@ -174,7 +174,7 @@ pub(crate) struct EnumeratedQuery<'e, 'a> {
     instances: Instances,
     /// Whether each state satisfies an atom that reads one path's state, by atom.
     truth: FxHashMap<FormulaId, Vec<Option<bool>>>,
-    paths: TiVec<Written, EnumeratedPath>,
+    paths: TiVec<PathIx, EnumeratedPath>,
     copies: Arc<Copies>,
 }
 
@@ -202,12 +202,12 @@ impl<'e, 'a> EnumeratedQuery<'e, 'a> {
     fn by_state(
         &mut self,
         terms: &mut Terms,
-        written: Written,
+        path: PathIx,
         time: u32,
         expr: &Expr<PathLeaf>,
         atom: Option<FormulaId>,
     ) -> Val {
-        let path = &self.paths[written];
+        let path = &self.paths[path];
         let (system, layer) = (self.system(path), &path.layers[time as usize]);
         // What reads more than the state is not asked for.
         let leaf = |leaf: &PathLeaf, state| in_state(system, &path.graph, leaf, state).unwrap_or(0);
@@ -226,7 +226,7 @@ impl<'e, 'a> EnumeratedQuery<'e, 'a> {
 }
 
 impl Writing for EnumeratedQuery<'_, '_> {
-    fn declare(&mut self, script: &mut Script, path: PathId, goal: &Goal) -> Result<Written, Error> {
+    fn declare(&mut self, script: &mut Script, path: PathId, goal: &Goal) -> Result<PathIx, Error> {
         let names = self.names(path);
         let layers = self.relevance.declare(path, goal)?;
         let declared = self.builder(path, &names, &layers).declare(script)?;
@@ -248,7 +248,7 @@ impl Writing for EnumeratedQuery<'_, '_> {
         Ok(Bound { path: self.paths.push_and_get_key(path), variables, guard })
     }
 
-    fn fix(&mut self, _: &mut Terms, path: PathId, known: &Known) -> Option<Written> {
+    fn fix(&mut self, _: &mut Terms, path: PathId, known: &Known) -> Option<PathIx> {
         let run = self.writer.run(path, known)?;
         Some(self.paths.push_and_get_key(EnumeratedPath::fix(path, &run)))
     }
@@ -260,7 +260,7 @@ impl Writing for EnumeratedQuery<'_, '_> {
         instance: &Instance,
         env: &Env,
         goal: &Goal,
-    ) -> Result<(Written, Term), Error> {
+    ) -> Result<(PathIx, Term), Error> {
         let layers = self.relevance.layers(path, goal)?;
         let graph = &self.writer.arena.graphs[path];
         let names = self.names(path);
@@ -273,11 +273,11 @@ impl Writing for EnumeratedQuery<'_, '_> {
     fn restrict(
         &mut self,
         script: &mut Script,
-        written: Written,
+        path: PathIx,
         goal: &Goal,
         beside: &[(PathId, Known)],
     ) -> Result<(), Error> {
-        let path = &self.paths[written];
+        let path = &self.paths[path];
         if !self.writer.arena.task.limits.prune {
             return Ok(());
         }
@@ -309,25 +309,25 @@ impl Writing for EnumeratedQuery<'_, '_> {
         Ok(sweep(&question, self, script).is_some())
     }
 
-    fn symbols(&self, written: Written) -> Vec<Term> {
-        self.paths[written].symbols()
+    fn symbols(&self, path: PathIx) -> Vec<Term> {
+        self.paths[path].symbols()
     }
 
-    fn decode(&self, written: Written, model: &Model) -> Option<Known> {
-        let path = &self.paths[written];
+    fn decode(&self, path: PathIx, model: &Model) -> Option<Known> {
+        let path = &self.paths[path];
         Some(self.writer.known_run(path.path, &path.decode(model)?))
     }
 
-    fn starts(&self, _: &mut Terms, written: Written, state: &State) -> Vec<Term> {
-        let path = &self.paths[written];
+    fn starts(&self, _: &mut Terms, path: PathIx, state: &State) -> Vec<Term> {
+        let path = &self.paths[path];
         vec![path.graph.initial_state(state).map_or(Term::FALSE, |state| path.layers[0].is(state))]
     }
 
-    fn took(&self, written: Written, step: usize, action: ActionId) -> Term {
-        self.paths[written].steps[step].took(action)
+    fn took(&self, path: PathIx, step: usize, action: ActionId) -> Term {
+        self.paths[path].steps[step].took(action)
     }
 
-    fn same_state(&self, terms: &mut Terms, p: Written, q: Written, time: u32) -> Term {
+    fn same_state(&self, terms: &mut Terms, p: PathIx, q: PathIx, time: u32) -> Term {
         let [p, q] = [p, q].map(|path| &self.paths[path].layers[time as usize]);
         if let ([state], [Term::TRUE]) = (&p.states[..], &p.terms[..]) {
             return q.is(*state);
@@ -337,30 +337,30 @@ impl Writing for EnumeratedQuery<'_, '_> {
         terms.and(&parts)
     }
 
-    fn leaf(&mut self, terms: &mut Terms, written: Written, time: u32, leaf: Leaf) -> Val {
-        let leaf = PathLeaf::State(self.paths[written].path, leaf);
-        self.by_state(terms, written, time, &Expr::Leaf(leaf), None)
+    fn leaf(&mut self, terms: &mut Terms, path: PathIx, time: u32, leaf: Leaf) -> Val {
+        let leaf = PathLeaf::State(self.paths[path].path, leaf);
+        self.by_state(terms, path, time, &Expr::Leaf(leaf), None)
     }
 
-    fn enabled(&mut self, terms: &mut Terms, written: Written, time: u32, action: ActionId) -> Term {
-        let path = &self.paths[written];
+    fn enabled(&mut self, terms: &mut Terms, path: PathIx, time: u32, action: ActionId) -> Term {
+        let path = &self.paths[path];
         path.layers[time as usize].any(terms, |state| path.graph.enables(state, action))
     }
 
-    fn halted(&mut self, terms: &mut Terms, written: Written, time: u32) -> Term {
-        let path = &self.paths[written];
+    fn halted(&mut self, terms: &mut Terms, path: PathIx, time: u32) -> Term {
+        let path = &self.paths[path];
         path.layers[time as usize].any(terms, |state| path.graph.halts(state))
     }
 
     fn whole(
         &mut self,
         terms: &mut Terms,
-        written: Written,
+        path: PathIx,
         time: u32,
         expr: &Expr<PathLeaf>,
         atom: Option<FormulaId>,
     ) -> Option<Val> {
-        Some(self.by_state(terms, written, time, expr, atom))
+        Some(self.by_state(terms, path, time, expr, atom))
     }
 }
 

@@ -7,7 +7,7 @@ mod step;
 
 use crate::names::{Copies, Names};
 use crate::value::{Leaves, Val, is, same};
-use crate::writing::{Bound, Env, Writer, Writing, Written, all_of};
+use crate::writing::{Bound, Env, PathIx, Writer, Writing, all_of};
 use hyperplan_problem::{ActionId, Leaf, Mode, PathId, State, System, Trace};
 use hyperplan_relevance::Error;
 use hyperplan_relevance::{Goal, Instance, Known, Move, Numbering, Relevant, Start, Task, cases, generalize};
@@ -199,27 +199,27 @@ impl Writer for ByVariable<'_> {
 /// Paths of one query whose states are written by variable.
 struct VariableQuery<'e, 'a> {
     writer: &'e ByVariable<'a>,
-    paths: TiVec<Written, VariablePath>,
+    paths: TiVec<PathIx, VariablePath>,
     /// For each command whether it can be taken, by path and time.
-    enabled: FxHashMap<(Written, u32), Arc<Vec<Term>>>,
+    enabled: FxHashMap<(PathIx, u32), Arc<Vec<Term>>>,
     copies: Arc<Copies>,
 }
 
 impl VariableQuery<'_, '_> {
-    fn system(&self, path: Written) -> &System {
+    fn system(&self, path: PathIx) -> &System {
         self.writer.task.system(self.paths[path].path)
     }
 
-    fn commands(&self, path: Written) -> &Commands {
+    fn commands(&self, path: PathIx) -> &Commands {
         &self.writer.rules[self.paths[path].path].commands
     }
 
-    fn state(&self, path: Written, time: u32) -> &[Val] {
+    fn state(&self, path: PathIx, time: u32) -> &[Val] {
         &self.paths[path].states[time as usize]
     }
 
     /// For each command, whether it can be taken at a time.
-    fn enabled_commands(&mut self, terms: &mut Terms, path: Written, time: u32) -> Arc<Vec<Term>> {
+    fn enabled_commands(&mut self, terms: &mut Terms, path: PathIx, time: u32) -> Arc<Vec<Term>> {
         if let Some(known) = self.enabled.get(&(path, time)) {
             return known.clone();
         }
@@ -229,7 +229,7 @@ impl VariableQuery<'_, '_> {
 }
 
 impl Writing for VariableQuery<'_, '_> {
-    fn declare(&mut self, script: &mut Script, path: PathId, _: &Goal) -> Result<Written, Error> {
+    fn declare(&mut self, script: &mut Script, path: PathId, _: &Goal) -> Result<PathIx, Error> {
         let names = self.copies.next(&self.writer.task, path);
         Ok(self.paths.push_and_get_key(self.writer.builder(path, &names).declare(script)))
     }
@@ -240,7 +240,7 @@ impl Writing for VariableQuery<'_, '_> {
         Ok(Bound { path: self.paths.push_and_get_key(path), variables, guard })
     }
 
-    fn fix(&mut self, terms: &mut Terms, path: PathId, known: &Known) -> Option<Written> {
+    fn fix(&mut self, terms: &mut Terms, path: PathId, known: &Known) -> Option<PathIx> {
         Some(self.paths.push_and_get_key(VariablePath::fix(terms, path, known)))
     }
 
@@ -251,7 +251,7 @@ impl Writing for VariableQuery<'_, '_> {
         instance: &Instance,
         env: &Env,
         _: &Goal,
-    ) -> Result<(Written, Term), Error> {
+    ) -> Result<(PathIx, Term), Error> {
         // No symbol is made, so the names do not matter.
         let names = Names::new(&self.writer.task, path, 0);
         let builder = self.writer.builder(path, &names);
@@ -259,40 +259,40 @@ impl Writing for VariableQuery<'_, '_> {
         Ok((self.paths.push_and_get_key(path), guard))
     }
 
-    fn symbols(&self, written: Written) -> Vec<Term> {
-        self.paths[written].symbols(self.commands(written))
+    fn symbols(&self, path: PathIx) -> Vec<Term> {
+        self.paths[path].symbols(self.commands(path))
     }
 
-    fn decode(&self, written: Written, model: &Model) -> Option<Known> {
-        self.paths[written].decode(self.system(written), self.commands(written), model)
+    fn decode(&self, path: PathIx, model: &Model) -> Option<Known> {
+        self.paths[path].decode(self.system(path), self.commands(path), model)
     }
 
-    fn starts(&self, terms: &mut Terms, written: Written, state: &State) -> Vec<Term> {
-        let values = self.state(written, 0).iter().zip(state);
+    fn starts(&self, terms: &mut Terms, path: PathIx, state: &State) -> Vec<Term> {
+        let values = self.state(path, 0).iter().zip(state);
         values.map(|(value, &known)| is(terms, value, known)).collect()
     }
 
-    fn took(&self, written: Written, step: usize, action: ActionId) -> Term {
-        self.paths[written].steps[step].took(action)
+    fn took(&self, path: PathIx, step: usize, action: ActionId) -> Term {
+        self.paths[path].steps[step].took(action)
     }
 
-    fn same_state(&self, terms: &mut Terms, p: Written, q: Written, time: u32) -> Term {
+    fn same_state(&self, terms: &mut Terms, p: PathIx, q: PathIx, time: u32) -> Term {
         let pairs = self.state(p, time).iter().zip(self.state(q, time));
         let parts: Vec<Term> = pairs.map(|(a, b)| same(terms, a, b)).collect();
         terms.and(&parts)
     }
 
-    fn leaf(&mut self, terms: &mut Terms, path: Written, time: u32, leaf: Leaf) -> Val {
+    fn leaf(&mut self, terms: &mut Terms, path: PathIx, time: u32, leaf: Leaf) -> Val {
         InState { system: self.system(path), state: self.state(path, time) }.leaf(terms, &leaf)
     }
 
-    fn enabled(&mut self, terms: &mut Terms, path: Written, time: u32, action: ActionId) -> Term {
+    fn enabled(&mut self, terms: &mut Terms, path: PathIx, time: u32, action: ActionId) -> Term {
         let enabled = self.enabled_commands(terms, path, time);
         let own: Vec<Term> = self.commands(path).of_action(action).map(|at| enabled[at]).collect();
         terms.or(&own)
     }
 
-    fn halted(&mut self, terms: &mut Terms, path: Written, time: u32) -> Term {
+    fn halted(&mut self, terms: &mut Terms, path: PathIx, time: u32) -> Term {
         let enabled = self.enabled_commands(terms, path, time);
         halted(self.commands(path), terms, self.system(path), self.state(path, time), &enabled)
     }
