@@ -1,19 +1,17 @@
-//! What the tests of the modules share: small problems, with all their states.
+//! What the tests of the modules share, and soundness by brute force: nothing is excluded that counts.
 
 use crate::goal::Goal;
+use crate::layers::Layers;
 use crate::reach::Question;
+use crate::relevant::{Narrowing, Relevance, leading};
 use crate::task::{Arena, Limits, Task};
-use hyperplan_problem::{NoFiles, Overrides, PathId, Problem, read};
-use hyperplan_space::Graph;
-use hyperplan_syntax::SourceMap;
+use hyperplan_problem::{PathId, Problem, Trace};
+use hyperplan_space::{Graph, Run};
+pub(crate) use hyperplan_tiny::problem;
+use hyperplan_tiny::{formula, holds, paths, system};
+use proptest::prelude::*;
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
-
-pub(crate) fn problem(text: &str) -> Problem {
-    let lowered = read(&mut SourceMap::new(), "test.hp", text, &NoFiles, &Overrides::default());
-    assert!(!lowered.has_errors(), "{:#?}", lowered.diagnostics);
-    lowered.problem
-}
 
 /// The first objective of a problem.
 pub(crate) fn arena(problem: &Problem) -> Arena<'_> {
@@ -29,7 +27,7 @@ pub(crate) fn alone<'a>(
     arena: &'a Arena<'a>,
     path: PathId,
     goal: &'a Goal,
-    declared: &'a FxHashMap<PathId, Arc<crate::Layers>>,
+    declared: &'a FxHashMap<PathId, Arc<Layers>>,
 ) -> Question<'a, 1> {
     Question {
         arena,
@@ -42,5 +40,116 @@ pub(crate) fn alone<'a>(
         least: 0,
         one_run: false,
         budget: 10_000,
+    }
+}
+
+/// Steps of every path.
+const STEPS: usize = 2;
+
+const P: PathId = PathId(0);
+const Q: PathId = PathId(1);
+
+fn objective(system: &str, prefix: &str, formula: &str) -> Problem {
+    problem(&format!("{system} objective o within {STEPS} {{ {prefix} {formula} }}"))
+}
+
+/// All paths of the system, with how they run through its graph.
+fn runs(arena: &Arena<'_>, path: PathId) -> Vec<(Trace, Run)> {
+    let traces = paths(arena.task.system(path), path, STEPS).into_iter();
+    let run = |trace: &Trace| Run::of(&arena.graphs[path], &trace.states, &trace.actions).expect("a path");
+    traces.map(|trace| (trace.clone(), run(&trace))).collect()
+}
+
+/// Whether a run is in some layers, as long as these go.
+fn within(run: &Run, layers: &Layers) -> bool {
+    (0..layers.at.len()).all(|time| layers.contains(time, run.states[time]))
+}
+
+/// Whether the one choice of paths satisfies the formula.
+fn satisfied(arena: &Arena<'_>, p: &Trace, q: &Trace) -> bool {
+    holds(arena.task.problem, arena.task.objective, &[p, q])
+}
+
+fn layers(relevance: &mut Relevance<'_, '_>, path: PathId, goal: &Goal) -> Arc<Layers> {
+    relevance.declare(path, goal).expect("it is small")
+}
+
+proptest! {
+    #[test]
+    fn satisfying_pairs_are_kept(system in system(), formula in formula(&["p", "q"])) {
+        let problem = objective(&system, "exists p. exists q.", &formula);
+        let arena = arena(&problem);
+        let goal = Goal::new(&arena.task.objective.formula, true);
+        let found = leading(&arena, &[P, Q], &goal, Narrowing::default()).expect("it is small");
+        prop_assert!(found.is_exact());
+        let hopeless = found.is_hopeless();
+        let mut relevance = Relevance::new(&arena, vec![None, None], found);
+        let kept = [layers(&mut relevance, P, &goal), layers(&mut relevance, Q, &goal)];
+        for (p, p_run) in runs(&arena, P) {
+            for (q, q_run) in runs(&arena, Q) {
+                if satisfied(&arena, &p, &q) {
+                    prop_assert!(!hopeless && within(&p_run, &kept[0]) && within(&q_run, &kept[1]));
+                }
+            }
+        }
+    }
+
+    /// With games where the two are tied. A path that wins against all others is kept, and makes no move that the game
+    /// has closed; beside a path that is kept, all that defeat it are.
+    #[test]
+    fn winners_and_their_defeats_are_kept(
+        system in system(),
+        formula in formula(&["p", "q"]),
+        slack in prop::option::of(0..2u32),
+    ) {
+        let problem = objective(&system, "exists p. forall q.", &formula);
+        let arena = arena(&problem);
+        let formula = &arena.task.objective.formula;
+        let goal = Goal::new(formula, true);
+        let narrowing = Narrowing { slack, one_run: false };
+        let found = leading(&arena, &[P], &goal, narrowing).expect("it is small");
+        prop_assert!(found.is_exact() || slack.is_some());
+        let (exact, game) = (found.is_exact(), found.game().cloned());
+        let (own, rest) = goal.split(formula, &|path| path == P);
+        let against = rest.opposed(formula);
+        let mut relevance = Relevance::new(&arena, vec![None, None], found);
+        let kept = layers(&mut relevance, P, &goal);
+        let defeats = layers(&mut relevance, Q, &against);
+        let (all, others) = (runs(&arena, P), runs(&arena, Q));
+        for (p, run) in &all {
+            let wins = others.iter().all(|(q, _)| satisfied(&arena, p, q));
+            if wins && exact && !others.is_empty() {
+                prop_assert!(within(run, &kept), "{:?}", p);
+                for (game, time) in game.iter().flat_map(|game| (0..run.letters.len()).map(move |t| (game, t))) {
+                    let closed = game.closed(time as u32);
+                    let made = |l: &crate::LosingMove| {
+                        l.state == run.states[time] && l.turn.letter == Some(run.letters[time])
+                    };
+                    prop_assert!(!closed.iter().any(made), "{:?}", p);
+                }
+            }
+            // What is asked of p alone, p satisfies if it does so beside some q.
+            let alone = own.is_empty() || others.iter().any(|(q, _)| satisfied(&arena, p, q));
+            for (q, q_run) in others.iter().filter(|_| alone && within(run, &kept)) {
+                prop_assert!(satisfied(&arena, p, q) || within(q_run, &defeats), "{:?} {:?}", p, q);
+            }
+        }
+    }
+
+    #[test]
+    fn pruning_only_takes_away(system in system(), formula in formula(&["p", "q"])) {
+        let problem = objective(&system, "exists p. forall q.", &formula);
+        let pruned = arena(&problem);
+        let mut all = pruned.clone();
+        all.task.limits.prune = false;
+        let goal = Goal::new(&pruned.task.objective.formula, true);
+        let [few, many] = [&pruned, &all].map(|arena| {
+            let found = leading(arena, &[P], &goal, Narrowing::default()).expect("it is small");
+            layers(&mut Relevance::new(arena, vec![None, None], found), P, &goal)
+        });
+        for (time, states) in few.at.iter().enumerate() {
+            prop_assert!(states.iter().all(|&state| many.contains(time, state)));
+        }
+        prop_assert!(runs(&all, P).iter().all(|(_, run)| within(run, &many)));
     }
 }

@@ -1,0 +1,209 @@
+//! Tiny problems for property tests of single crates, and what they mean, by brute force: paths of exactly so many
+//! steps are listed from the clauses, and formulas are read as the language defines them. For the whole program there
+//! are larger ones, in the workspace's `tests`.
+
+use hyperplan_problem::{
+    ActionId, Expr, FormulaId, Interval, Leaf, NoFiles, Node, Objective, Overrides, PathId, PathLeaf,
+    Problem, State, System, Trace, Update, Value, read,
+};
+use hyperplan_syntax::SourceMap;
+use proptest::prelude::*;
+
+/// The problem that a text describes.
+///
+/// # Panics
+/// If it describes none.
+#[must_use]
+pub fn problem(text: &str) -> Problem {
+    let lowered = read(&mut SourceMap::new(), "tiny.hp", text, &NoFiles, &Overrides::default());
+    assert!(!lowered.has_errors(), "{text}\n{:#?}", lowered.diagnostics);
+    lowered.problem
+}
+
+/// A system with a number, a truth value, two actions and up to five clauses, some of which have several outcomes.
+pub fn system() -> impl Strategy<Value = String> {
+    let guard = prop_oneof![
+        Just("true".to_owned()),
+        (0..4).prop_map(|n| format!("x < {n}")),
+        (0..4).prop_map(|n| format!("x == {n}")),
+        (0..3).prop_map(|n| format!("(b | x > {n})")),
+    ];
+    let update = prop_oneof![
+        Just(String::new()),
+        Just("x' = x + 1;".to_owned()),
+        Just("x' = x - 1;".to_owned()),
+        Just("b' = !b;".to_owned()),
+        (0..3).prop_map(|n| format!("x' = {n}; b' = x == {n};")),
+        (0..3).prop_map(|n| format!("x' in {{x, {n}}};")),
+        (0..2).prop_map(|n| format!("x' in x - {n}..x + 1;")),
+    ];
+    let actions = prop::sample::select(vec!["l", "r", "l | r"]);
+    let clause = (actions, guard, update)
+        .prop_map(|(actions, guard, update)| format!("on {actions} when {guard} {{ {update} }}"));
+    let absorb = prop_oneof![Just(String::new()), Just("absorb x == 2;".to_owned())];
+    (prop::collection::vec(clause, 1..6), absorb, 0..3).prop_map(|(clauses, absorb, init)| {
+        let clauses = clauses.join(" ");
+        format!(
+            "system S {{ state x: 0..2, b: bool; action l, r; init x <= {init} & !b; {absorb} {clauses} }}"
+        )
+    })
+}
+
+/// A formula over some paths, to be read `within`.
+pub fn formula(paths: &'static [&'static str]) -> impl Strategy<Value = String> {
+    let path = || prop::sample::select(paths);
+    let atom = prop_oneof![
+        (path(), 0..3).prop_map(|(p, n)| format!("x[{p}] == {n}")),
+        path().prop_map(|p| format!("b[{p}]")),
+        path().prop_map(|p| format!("action[{p}] == l")),
+        (path(), path()).prop_map(|(p, q)| format!("action[{p}] == action[{q}]")),
+        (path(), path()).prop_map(|(p, q)| format!("state[{p}] == state[{q}]")),
+        (path(), path()).prop_map(|(p, q)| format!("x[{p}] < x[{q}]")),
+    ];
+    atom.prop_recursive(4, 12, 2, |inner| {
+        let pair = (inner.clone(), inner.clone());
+        prop_oneof![
+            inner.clone().prop_map(|a| format!("!({a})")),
+            inner.clone().prop_map(|a| format!("X ({a})")),
+            inner.clone().prop_map(|a| format!("G ({a})")),
+            inner.prop_map(|a| format!("F[1,2] ({a})")),
+            pair.clone().prop_map(|(a, b)| format!("(({a}) & ({b}))")),
+            pair.clone().prop_map(|(a, b)| format!("(({a}) -> ({b}))")),
+            pair.clone().prop_map(|(a, b)| format!("(({a}) U ({b}))")),
+            pair.prop_map(|(a, b)| format!("(({a}) R[0,1] ({b}))")),
+        ]
+    })
+}
+
+/// Where a leaf of a system's expressions stands for, in a state.
+fn read_leaf(system: &System, leaf: Leaf, state: &State) -> Option<Value> {
+    match leaf {
+        Leaf::Var(var) => Some(state[usize::from(var)]),
+        Leaf::Label(label) => value(system, &system.labels[label].expr, state),
+    }
+}
+
+fn value(system: &System, expr: &Expr<Leaf>, state: &State) -> Option<Value> {
+    expr.evaluate(&mut |leaf| read_leaf(system, *leaf, state))
+}
+
+fn holds_in(system: &System, expr: &Expr<Leaf>, state: &State) -> bool {
+    value(system, expr, state) == Some(Value::Bool(true))
+}
+
+/// Every transition from a state.
+///
+/// # Panics
+/// On systems with variables without bounds.
+#[must_use]
+pub fn transitions(system: &System, from: &State) -> Vec<(ActionId, State)> {
+    let stay = |&action: &ActionId| (action, from.clone());
+    if holds_in(system, &system.absorb, from) {
+        return system.actions.iter().map(stay).collect();
+    }
+    let mut found = Vec::new();
+    for clause in system.clauses.iter().filter(|clause| holds_in(system, &clause.guard, from)) {
+        let mut all = vec![from.clone()];
+        for (var, update) in &clause.updates {
+            let of = |e: &Expr<Leaf>| value(system, e, from).expect("it has a value");
+            let values: Vec<Value> = match update {
+                Update::Assign(e) => vec![of(e)],
+                Update::OneOf(es) => es.iter().map(of).collect(),
+                Update::Within(lo, hi) => match (of(lo), of(hi)) {
+                    (Value::Int(lo), Value::Int(hi)) => (lo..=hi).map(Value::Int).collect(),
+                    _ => unreachable!("ranges are of integers"),
+                },
+            };
+            let values: Vec<Value> =
+                values.into_iter().filter(|&value| system.vars[*var].ty.contains(value)).collect();
+            let with = |state: &State, value: Value| {
+                let mut next = state.clone();
+                next[usize::from(*var)] = value;
+                next
+            };
+            all = all.iter().flat_map(|state| values.iter().map(|&v| with(state, v))).collect();
+        }
+        found.extend(all.iter().flat_map(|to| clause.actions.iter().map(|&action| (action, to.clone()))));
+    }
+    found.sort();
+    found.dedup();
+    found
+}
+
+/// The states that a system of [`system`] starts in.
+#[must_use]
+pub fn starts(system: &System) -> Vec<State> {
+    let all = (0..3).flat_map(|x| [false, true].map(|b| State::from([Value::Int(x), Value::Bool(b)])));
+    all.filter(|state| holds_in(system, &system.init, state)).collect()
+}
+
+/// Every path of so many steps.
+#[must_use]
+pub fn paths(system: &System, path: PathId, steps: usize) -> Vec<Trace> {
+    let start = |state| Trace { path, states: vec![state], actions: Vec::new() };
+    let mut all: Vec<Trace> = starts(system).into_iter().map(start).collect();
+    for _ in 0..steps {
+        let further = |trace: &Trace| {
+            let next = transitions(system, &trace.states[trace.actions.len()]).into_iter();
+            let trace = trace.clone();
+            next.map(move |(action, state)| {
+                let mut longer = trace.clone();
+                longer.actions.push(action);
+                longer.states.push(state);
+                longer
+            })
+        };
+        all = all.iter().flat_map(further).collect();
+    }
+    all
+}
+
+/// Whether paths of equal length, in the order of their variables, satisfy the objective's formula `within` that length.
+#[must_use]
+pub fn holds(problem: &Problem, objective: &Objective, paths: &[&Trace]) -> bool {
+    Reading { problem, objective, paths }.at(objective.formula.root(), 0)
+}
+
+struct Reading<'a> {
+    problem: &'a Problem,
+    objective: &'a Objective,
+    paths: &'a [&'a Trace],
+}
+
+impl Reading<'_> {
+    fn at(&self, id: FormulaId, time: usize) -> bool {
+        let end = self.paths[0].actions.len();
+        let times = |interval: &Interval| {
+            let last = interval.hi.map_or(end, |hi| end.min(time + hi as usize));
+            time + interval.lo as usize..=last
+        };
+        match &self.objective.formula.nodes[id] {
+            Node::Atom(expr) => expr.evaluate(&mut |leaf| self.leaf(leaf, time)) == Some(Value::Bool(true)),
+            Node::Not(a) => !self.at(*a, time),
+            Node::And(parts) => parts.iter().all(|&part| self.at(part, time)),
+            Node::Or(parts) => parts.iter().any(|&part| self.at(part, time)),
+            Node::Iff(a, b) => self.at(*a, time) == self.at(*b, time),
+            Node::Next(a) => time < end && self.at(*a, time + 1),
+            Node::WeakNext(a) => time == end || self.at(*a, time + 1),
+            Node::Until(interval, a, b) => times(interval)
+                .any(|then| self.at(*b, then) && (time..then).all(|before| self.at(*a, before))),
+            Node::Release(interval, a, b) => times(interval)
+                .all(|then| self.at(*b, then) || (time..then).any(|before| self.at(*a, before))),
+        }
+    }
+
+    fn leaf(&self, leaf: &PathLeaf, time: usize) -> Option<Value> {
+        let of = |path: PathId| self.paths[usize::from(path)];
+        let took = |path: PathId| time.checked_sub(1).map(|step| of(path).actions[step]);
+        let system = |path: PathId| &self.problem.systems[self.objective.paths[path].system];
+        let next = |path: PathId| transitions(system(path), &of(path).states[time]);
+        Some(Value::Bool(match *leaf {
+            PathLeaf::State(path, leaf) => return read_leaf(system(path), leaf, &of(path).states[time]),
+            PathLeaf::Took(path, action) => took(path) == Some(action),
+            PathLeaf::SameAction(p, q) => took(p) == took(q),
+            PathLeaf::SameState(p, q) => of(p).states[time] == of(q).states[time],
+            PathLeaf::Enabled(path, action) => next(path).iter().any(|step| step.0 == action),
+            PathLeaf::Halted(path) => next(path).iter().all(|step| step.1 == of(path).states[time]),
+        }))
+    }
+}
