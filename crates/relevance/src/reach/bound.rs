@@ -85,7 +85,7 @@ impl Bound {
         if let Some(&row) = self.met.get(&(residual, time)) {
             return row;
         }
-        let relaxed = residuals.relax(residual, Some(time + 1), &self.settling);
+        let relaxed = residuals.relax(residual, time + 1, &self.settling);
         let row = self.rows.get(&relaxed).copied();
         self.met.insert((residual, time), row);
         row
@@ -113,7 +113,7 @@ struct Search<'s> {
 impl Search<'_> {
     /// All states with what is left there, relaxed; the initial ones.
     fn explore(&mut self, product: &mut Product<'_, 1>) -> Result<Vec<Node>, TooMany> {
-        let relaxed = product.residuals.relax(product.initial, Some(0), &self.bound.settling);
+        let relaxed = product.residuals.relax(product.initial, 0, &self.bound.settling);
         let mut index: Vec<Vec<u32>> = Vec::new();
         let initial = &self.graph.initial;
         for &state in initial {

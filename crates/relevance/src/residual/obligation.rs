@@ -4,6 +4,7 @@
 
 use super::{FALSE, Residual, Residuals, Shape, TRUE};
 use hyperplan_problem::Interval;
+use rustc_hash::FxHashMap;
 
 /// Atoms whose values are known from some time on, for ever.
 #[derive(Clone, Copy, Debug, Default)]
@@ -30,31 +31,48 @@ impl Settling {
     }
 }
 
+/// What was found of residuals under one settling. They share parts, which would be walked once for each way to them.
+#[derive(Default)]
+struct Known {
+    /// By whether the time of the next position is known.
+    relaxed: FxHashMap<(Residual, bool), Residual>,
+    can_hold: FxHashMap<Residual, bool>,
+    owes_nothing: FxHashMap<Residual, bool>,
+}
+
 impl Residuals {
     /// A weaker residual without numbers: deadlines are lifted, and what must always hold is forgotten, but for what
     /// is asked for at a time when it will be false, since the settling atoms are known. `time` is that of the next
-    /// position; `None` within operators, where it is open. Recursion is bounded by the nesting of the formula.
-    pub(crate) fn relax(&mut self, residual: Residual, time: Option<u32>, settling: &Settling) -> Residual {
-        let many = |all: &mut Self, parts: &[Residual]| -> Vec<Residual> {
-            parts.iter().map(|&part| all.relax(part, time, settling)).collect()
-        };
-        match self.shapes[residual as usize].clone() {
-            Shape::True | Shape::False | Shape::Literal { .. } => residual,
-            Shape::And(parts) => {
-                let parts = many(self, &parts);
-                self.join(true, parts)
-            }
-            Shape::Or(parts) => {
-                let parts = many(self, &parts);
-                self.join(false, parts)
+    /// position.
+    pub(crate) fn relax(&mut self, residual: Residual, time: u32, settling: &Settling) -> Residual {
+        self.relaxed(residual, Some(time), settling, &mut Known::default())
+    }
+
+    /// The same; within operators the time is open. Recursion is bounded by the nesting of the formula.
+    fn relaxed(
+        &mut self,
+        residual: Residual,
+        time: Option<u32>,
+        settling: &Settling,
+        known: &mut Known,
+    ) -> Residual {
+        if let Some(&relaxed) = known.relaxed.get(&(residual, time.is_some())) {
+            return relaxed;
+        }
+        let shape = self.shapes[residual as usize].clone();
+        let relaxed = match shape {
+            Shape::True | Shape::False | Shape::Literal { .. } => return residual,
+            Shape::And(ref parts) | Shape::Or(ref parts) => {
+                let parts = parts.iter().map(|&part| self.relaxed(part, time, settling, known)).collect();
+                self.join(matches!(shape, Shape::And(_)), parts)
             }
             Shape::Next { strong: false, .. } => TRUE,
             Shape::Next { strong: true, then } => {
-                let then = self.relax(then, None, settling);
+                let then = self.relaxed(then, None, settling, known);
                 self.next(true, then)
             }
             Shape::Until(_, left, right) => {
-                let (left, right) = (self.relax(left, None, settling), self.relax(right, None, settling));
+                let [left, right] = [left, right].map(|part| self.relaxed(part, None, settling, known));
                 self.temporal(true, Interval::ALWAYS, left, right)
             }
             Shape::Release(interval, left, right) => {
@@ -62,60 +80,93 @@ impl Residuals {
                     let from = from.saturating_sub(time);
                     interval.lo <= from && interval.hi.is_none_or(|hi| from <= hi)
                 });
-                if !covers || self.can_hold(right, settling) {
-                    return TRUE;
+                if !covers || self.could_hold(right, settling, known) {
+                    TRUE
+                } else {
+                    let left = self.relaxed(left, None, settling, known);
+                    let right = self.only_settling(right, settling, &mut FxHashMap::default());
+                    self.temporal(false, Interval::ALWAYS, left, right)
                 }
-                let (left, right) = (self.relax(left, None, settling), self.only_settling(right, settling));
-                self.temporal(false, Interval::ALWAYS, left, right)
             }
-        }
+        };
+        known.relaxed.insert((residual, time.is_some()), relaxed);
+        relaxed
     }
 
     /// A weaker residual that reads settling atoms only.
-    fn only_settling(&mut self, residual: Residual, settling: &Settling) -> Residual {
-        match self.shapes[residual as usize].clone() {
+    fn only_settling(
+        &mut self,
+        residual: Residual,
+        settling: &Settling,
+        known: &mut FxHashMap<Residual, Residual>,
+    ) -> Residual {
+        if let Some(&weaker) = known.get(&residual) {
+            return weaker;
+        }
+        let shape = self.shapes[residual as usize].clone();
+        let weaker = match shape {
             Shape::Literal { bit, .. } if settling.known >> bit & 1 == 1 => residual,
-            Shape::And(parts) => {
-                let parts = parts.iter().map(|&part| self.only_settling(part, settling)).collect();
-                self.join(true, parts)
-            }
-            Shape::Or(parts) => {
-                let parts = parts.iter().map(|&part| self.only_settling(part, settling)).collect();
-                self.join(false, parts)
+            Shape::And(ref parts) | Shape::Or(ref parts) => {
+                let parts = parts.iter().map(|&part| self.only_settling(part, settling, known)).collect();
+                self.join(matches!(shape, Shape::And(_)), parts)
             }
             Shape::False => FALSE,
-            _ => TRUE,
-        }
+            Shape::True
+            | Shape::Literal { .. }
+            | Shape::Next { .. }
+            | Shape::Until(..)
+            | Shape::Release(..) => TRUE,
+        };
+        known.insert(residual, weaker);
+        weaker
     }
 
     /// Whether a residual can still be met once the settling atoms are known, as far as they tell.
     pub(crate) fn can_hold(&self, residual: Residual, settling: &Settling) -> bool {
-        match &self.shapes[residual as usize] {
-            Shape::True => true,
-            Shape::False => false,
-            Shape::Literal { bit, positive } => settling.literal(*bit, *positive).0,
-            Shape::And(parts) => parts.iter().all(|&part| self.can_hold(part, settling)),
-            Shape::Or(parts) => parts.iter().any(|&part| self.can_hold(part, settling)),
+        self.could_hold(residual, settling, &mut Known::default())
+    }
+
+    fn could_hold(&self, residual: Residual, settling: &Settling, known: &mut Known) -> bool {
+        if let Some(&holds) = known.can_hold.get(&residual) {
+            return holds;
+        }
+        let holds = match &self.shapes[residual as usize] {
+            Shape::True => return true,
+            Shape::False => return false,
+            Shape::Literal { bit, positive } => return settling.literal(*bit, *positive).0,
+            Shape::And(parts) => parts.iter().all(|&part| self.could_hold(part, settling, known)),
+            Shape::Or(parts) => parts.iter().any(|&part| self.could_hold(part, settling, known)),
             Shape::Next { strong: false, .. } => true,
             // A trace may end before the interval begins.
             Shape::Release(Interval { lo: 1.., .. }, ..) => true,
             Shape::Next { then: part, .. } | Shape::Until(_, _, part) | Shape::Release(_, _, part) => {
-                self.can_hold(*part, settling)
+                self.could_hold(*part, settling, known)
             }
-        }
+        };
+        known.can_hold.insert(residual, holds);
+        holds
     }
 
     /// Whether nothing is owed any more but that something be never the case.
     pub(crate) fn owes_nothing(&self, residual: Residual, settling: &Settling) -> bool {
-        match &self.shapes[residual as usize] {
-            Shape::True => true,
-            Shape::False => false,
-            Shape::Literal { bit, positive } => settling.literal(*bit, *positive).1,
-            Shape::And(parts) => parts.iter().all(|&part| self.owes_nothing(part, settling)),
-            Shape::Or(parts) => parts.iter().any(|&part| self.owes_nothing(part, settling)),
-            Shape::Next { strong: false, .. } => true,
-            Shape::Next { then: part, .. } | Shape::Until(_, _, part) => self.owes_nothing(*part, settling),
-            Shape::Release(_, _, right) => self.can_hold(*right, settling),
+        self.is_free(residual, settling, &mut Known::default())
+    }
+
+    fn is_free(&self, residual: Residual, settling: &Settling, known: &mut Known) -> bool {
+        if let Some(&free) = known.owes_nothing.get(&residual) {
+            return free;
         }
+        let free = match &self.shapes[residual as usize] {
+            Shape::True => return true,
+            Shape::False => return false,
+            Shape::Literal { bit, positive } => return settling.literal(*bit, *positive).1,
+            Shape::And(parts) => parts.iter().all(|&part| self.is_free(part, settling, known)),
+            Shape::Or(parts) => parts.iter().any(|&part| self.is_free(part, settling, known)),
+            Shape::Next { strong: false, .. } => true,
+            Shape::Next { then: part, .. } | Shape::Until(_, _, part) => self.is_free(*part, settling, known),
+            Shape::Release(_, _, right) => self.could_hold(*right, settling, known),
+        };
+        known.owes_nothing.insert(residual, free);
+        free
     }
 }
