@@ -228,7 +228,8 @@ impl Parser<'_> {
     #[inline(never)]
     fn infix(&mut self, least: u8) -> Option<(&'static Row, Span)> {
         let token = self.token();
-        let own = token.infix();
+        // A contextual name may begin the next update, where a `;` is missing.
+        let own = token.infix().filter(|row| !row.contextual || self.peek_at(1) != Tok::Prime);
         let op = own.or_else(|| token.slip(false)).filter(|op| op.level >= least)?;
         self.bump();
         if own.is_none() {
