@@ -4,7 +4,7 @@
 //! number by a time; a failure prints the problem, ready to be put among the fixtures, and the seed that makes it the
 //! first one.
 
-use hyperplan_plan::{Config, Error, Limits, Outcome, Quantifiers, States, Verdict, solve};
+use hyperplan_plan::{Config, Error, Fault, Limits, Outcome, Quantifiers, States, Verdict, solve};
 use hyperplan_problem::{NoFiles, Objective, Overrides, Problem, Rational, Strategy, Value, read};
 use hyperplan_solver::{Deadline, Spec, discover};
 use hyperplan_syntax::SourceMap;
@@ -282,7 +282,7 @@ impl Answers {
             catch_unwind(AssertUnwindSafe(|| way.answer(typed, &typed.objectives[0], solver, second)));
         match answer {
             Ok(Ok(Outcome { verdict: Verdict::Unknown, .. })) => Judged::Unknown,
-            Ok(Err(error)) if error.exit_code() == 2 => Judged::Unsupported,
+            Ok(Err(error)) if error.fault() == Fault::Request => Judged::Unsupported,
             Ok(answer) => {
                 wrong(answer, random, brute, typed, brute.verdict()).map_or(Judged::Right, Judged::Wrong)
             }

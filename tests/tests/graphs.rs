@@ -1,6 +1,6 @@
 //! Graph files against brute force: random systems with one enumeration, written as lists of transitions.
 
-use hyperplan_plan::{Config, Quantifiers, States, Verdict, solve};
+use hyperplan_plan::{Config, Fault, Quantifiers, States, Verdict, solve};
 use hyperplan_problem::{Overrides, Problem, read};
 use hyperplan_solver::{Deadline, Spec};
 use hyperplan_syntax::SourceMap;
@@ -80,7 +80,7 @@ fn graphs_are_decided_as_brute_force_does() {
                         let realizable = outcome.verdict == Verdict::Realizable;
                         assert_eq!(realizable, expected, "{way}, {}", context());
                     }
-                    Err(error) => assert_eq!(error.exit_code(), 2, "{way}, {error}, {}", context()),
+                    Err(error) => assert_eq!(error.fault(), Fault::Request, "{way}, {error}, {}", context()),
                 }
             }
         }

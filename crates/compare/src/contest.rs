@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use hyperplan_problem::answer::ReasonCode;
+
 use crate::text::one_line;
 use crate::{Answer, Record, Status};
 
@@ -243,9 +245,7 @@ pub(crate) fn is_query(record: &Record) -> bool {
 /// model that does not satisfy its query (exit status 4) from a strategy that its own checker refutes (5).
 pub(crate) fn is_wrong_model(record: &Record) -> bool {
     let blamed = record.exit_code == Some(4) || is_query(record);
-    is_refuted(record) && blamed
-        || record.status == Status::Error
-            && record.message.as_deref().is_some_and(|message| message.contains("wrong model"))
+    is_refuted(record) && blamed || record.reason_code == Some(ReasonCode::WrongModel)
 }
 
 /// Whether the strategy fails though nobody blames the model.

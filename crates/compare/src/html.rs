@@ -10,7 +10,7 @@ use askama::Template;
 use serde::Serialize;
 
 use crate::contest::{Cell, Contest, Instance, is_certified};
-use crate::judge::{Claim, Finding, Judgement};
+use crate::judge::{Claim, Fault, Finding, Judgement};
 use crate::links::{Link, Links};
 use crate::plot::{self, Kind, Scatter};
 use crate::score::Scores;
@@ -174,7 +174,7 @@ fn facts(contest: &Contest<'_>) -> String {
 
 fn verdict(judgement: &Judgement) -> String {
     let findings = judgement.findings.len();
-    let whose = if judgement.exit_code() == 5 {
+    let whose = if judgement.fault() == Some(Fault::Ours) {
         "not all of it can be laid on a solver"
     } else {
         "solvers are to blame"

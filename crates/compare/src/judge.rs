@@ -99,13 +99,9 @@ impl Judgement {
         self.findings.is_empty()
     }
 
-    /// 0 where nothing is wrong, 4 where solvers are to blame, 5 where hyperplan may be.
-    pub fn exit_code(&self) -> u8 {
-        match self.findings.iter().map(|finding| finding.fault).max() {
-            None => 0,
-            Some(Fault::Solver | Fault::Status) => 4,
-            Some(Fault::Ours) => 5,
-        }
+    /// Who is to blame for the worst, if anything is wrong.
+    pub fn fault(&self) -> Option<Fault> {
+        self.findings.iter().map(|finding| finding.fault).max()
     }
 }
 

@@ -11,12 +11,13 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use hyperplan_problem::answer::ReasonCode;
 use rustix::process::{Pid, Signal, kill_process, kill_process_group};
 
 use crate::folders::{self, Folders};
-use crate::outcome::{self, Outcome};
 use crate::plan::{Kind, Run};
 use crate::query::Query;
+use crate::reading::{self, Reading};
 use crate::record::{Record, Status};
 use crate::supervise::{Job, Measured};
 use crate::witness;
@@ -254,7 +255,7 @@ fn hear(child: &mut Child, job: &Job, lifelines: &Lifelines) -> io::Result<Strin
 
 fn problem_job(run: &Run, objective: &str, setting: &Setting, folders: &Folders) -> Job {
     let mut arguments: Vec<String> =
-        ["solve", &run.instance.file, "--objective", objective].map(str::to_owned).to_vec();
+        ["solve", &run.instance.file, "--objective", objective, "--failures"].map(str::to_owned).to_vec();
     let mut option = |name: &str, value: String| arguments.extend([name.to_owned(), value]);
     option("--solver", run.solver.name.clone());
     option("--seed", run.seed.to_string());
@@ -306,23 +307,24 @@ fn record(run: &Run, setting: &Setting, measured: &Measured, folders: &Folders) 
     } else {
         past(limit.wall_s, measured.wall_s).then_some("wall time")
     };
-    let outcome: Outcome = match &instance.kind {
+    let reading: Reading = match &instance.kind {
         Kind::Query(query) => {
-            let outcome = outcome::of_query(measured, query, over.is_some()).sized(query);
-            witness::checked(outcome, query, &instance.file, measured)
+            let reading = reading::of_query(measured, query, over.is_some()).sized(query);
+            witness::checked(reading, query, &instance.file, measured)
         }
         Kind::Problem { .. } => {
-            let said = outcome::of_problem(measured, over.is_some());
+            let said = reading::of_problem(measured, over.is_some());
             // One that failed does not say what it asked.
             let kept = if said.variables.is_none() { folders.largest() } else { None };
-            let said = kept.iter().fold(said, Outcome::sized);
-            Outcome { expected: instance.expected, ..said }
+            let said = kept.iter().fold(said, Reading::sized);
+            Reading { expected: instance.expected, ..said }
         }
     };
-    let message = match (outcome.status, outcome.message) {
-        // Which time it was; the reason `timeout` says no more than the status.
+    let message = match (reading.status, reading.message) {
+        // Which time it was; that it was the time says no more than the status.
         (Status::Timeout, message) => {
-            message.filter(|reason| reason != "timeout").or(over.map(str::to_owned))
+            let more = reading.reason_code != Some(ReasonCode::Timeout);
+            message.filter(|_| more).or(over.map(str::to_owned))
         }
         (_, message) => message,
     };
@@ -330,19 +332,19 @@ fn record(run: &Run, setting: &Setting, measured: &Measured, folders: &Folders) 
         instance: instance.name.clone(),
         family: instance.family.clone(),
         sha256: instance.sha256.clone(),
-        logic: outcome.logic,
+        logic: reading.logic,
         states: run.states.clone(),
         quantifiers: run.quantifiers.clone(),
-        horizon: instance.horizon.or(outcome.horizon),
+        horizon: instance.horizon.or(reading.horizon),
         set: instance.set.clone(),
         solver: solver.name.clone(),
-        version: outcome.version.or_else(|| solver.version.clone()),
+        version: reading.version.or_else(|| solver.version.clone()),
         options: run.options.join(" "),
         seed: run.seed,
         repetition: run.repetition,
-        status: outcome.status,
-        expected: outcome.expected,
-        verified: outcome.verified,
+        status: reading.status,
+        expected: reading.expected,
+        verified: reading.verified,
         wall_s: rounded(measured.wall_s),
         cpu_s: rounded(measured.cpu_s),
         memory_mib: rounded(measured.memory_mib),
@@ -350,16 +352,17 @@ fn record(run: &Run, setting: &Setting, measured: &Measured, folders: &Folders) 
         exit_code: measured.exit_code,
         signal: measured.signal,
         host: setting.host.clone(),
-        variables: outcome.variables,
-        assertions: outcome.assertions,
-        bytes: outcome.bytes,
+        variables: reading.variables,
+        assertions: reading.assertions,
+        bytes: reading.bytes,
         message: measured.failure.clone().or(message),
         queries: folders.queries.clone(),
         key: run.key.clone(),
-        states_used: outcome.states,
-        quantifiers_used: outcome.quantifiers,
-        solver_s: outcome.solver_s,
-        rounds: outcome.rounds,
+        states_used: reading.states,
+        quantifiers_used: reading.quantifiers,
+        solver_s: reading.solver_s,
+        rounds: reading.rounds,
+        reason_code: reading.reason_code,
     }
 }
 

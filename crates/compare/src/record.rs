@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::fmt;
 
+use hyperplan_problem::answer::ReasonCode;
 use serde::{Deserialize, Serialize};
 
 use crate::text::one_line;
@@ -147,6 +148,9 @@ pub struct Record {
     /// How often the outermost query was asked; `None` for a query.
     #[serde(default)]
     pub rounds: Option<u64>,
+    /// Why there is no answer, in a word; `None` for a query.
+    #[serde(default)]
+    pub reason_code: Option<ReasonCode>,
 }
 
 /// What became of a witness, in words, from how a record says that it was checked.
@@ -199,6 +203,7 @@ pub(crate) mod tests {
             quantifiers_used: None,
             solver_s: None,
             rounds: None,
+            reason_code: None,
         }
     }
 
@@ -206,7 +211,7 @@ pub(crate) mod tests {
     fn later_fields_may_be_missing() {
         let mut line = serde_json::to_value(record("")).expect("it is JSON");
         let fields = line.as_object_mut().expect("it is an object");
-        for field in ["key", "states_used", "quantifiers_used", "solver_s", "rounds"] {
+        for field in ["key", "states_used", "quantifiers_used", "solver_s", "rounds", "reason_code"] {
             assert!(fields.remove(field).is_some());
         }
         assert_eq!(serde_json::from_value::<Record>(line).expect("it is a record"), record(""));

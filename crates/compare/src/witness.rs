@@ -5,14 +5,14 @@ use std::fs;
 use hyperplan_smt::{Benchmark, Model, ReadError, check_partial_model, read_script, symbol_text};
 use hyperplan_solver::{PrintedModel, PrintedModelError};
 
-use crate::outcome::Outcome;
 use crate::query::{Query, Request};
+use crate::reading::Reading;
 use crate::record::Status;
 use crate::supervise::Measured;
 
 /// What became of a model.
 #[derive(Debug, PartialEq)]
-enum Verdict {
+enum Worth {
     /// All assertions are true.
     Holds,
     /// An assertion is false.
@@ -21,63 +21,63 @@ enum Verdict {
     Unchecked(String),
 }
 
-/// The outcome of a query, with what its model is worth where one was asked for.
-pub(crate) fn checked(outcome: Outcome, query: &Query, file: &str, measured: &Measured) -> Outcome {
-    if outcome.status != Status::Sat || query.checks.len() != 1 || query.request == Request::Nothing {
-        return outcome;
+/// The reading of a query, with what its model is worth where one was asked for.
+pub(crate) fn checked(reading: Reading, query: &Query, file: &str, measured: &Measured) -> Reading {
+    if reading.status != Status::Sat || query.checks.len() != 1 || query.request == Request::Nothing {
+        return reading;
     }
-    let (verified, message) = match verdict(query.request, file, measured) {
-        Verdict::Holds => (Some("model"), None),
-        Verdict::Fails(why) => (Some("refuted"), Some(format!("wrong model: {why}"))),
-        Verdict::Unchecked(why) => (None, Some(format!("model not checked: {why}"))),
+    let (verified, message) = match worth(query.request, file, measured) {
+        Worth::Holds => (Some("model"), None),
+        Worth::Fails(why) => (Some("refuted"), Some(format!("wrong model: {why}"))),
+        Worth::Unchecked(why) => (None, Some(format!("model not checked: {why}"))),
     };
-    Outcome { verified: verified.map(str::to_owned), message: message.or(outcome.message), ..outcome }
+    Reading { verified: verified.map(str::to_owned), message: message.or(reading.message), ..reading }
 }
 
-fn verdict(request: Request, file: &str, measured: &Measured) -> Verdict {
+fn worth(request: Request, file: &str, measured: &Measured) -> Worth {
     if measured.is_cut() {
-        return Verdict::Unchecked("it is too long".to_owned());
+        return Worth::Unchecked("it is too long".to_owned());
     }
     // Before the file is: it may be long.
     let printed = match PrintedModel::read(&measured.stdout) {
         Ok(printed) => printed,
-        Err(PrintedModelError::Empty) => return Verdict::Unchecked("none was printed".to_owned()),
-        Err(error) => return Verdict::Unchecked(error.to_string()),
+        Err(PrintedModelError::Empty) => return Worth::Unchecked("none was printed".to_owned()),
+        Err(error) => return Worth::Unchecked(error.to_string()),
     };
     if let Some(symbol) = printed.ambiguous() {
-        return Verdict::Unchecked(format!("it says two things of {symbol}"));
+        return Worth::Unchecked(format!("it says two things of {symbol}"));
     }
     match fs::read(file) {
         Ok(bytes) => of_model(request, &String::from_utf8_lossy(&bytes), &printed),
-        Err(error) => Verdict::Unchecked(format!("{file}: {error}")),
+        Err(error) => Worth::Unchecked(format!("{file}: {error}")),
     }
 }
 
 /// What a printed model of a text is.
-fn of_model(request: Request, text: &str, printed: &PrintedModel) -> Verdict {
+fn of_model(request: Request, text: &str, printed: &PrintedModel) -> Worth {
     let benchmark = match read_script(text) {
         Ok(benchmark) => benchmark,
         Err(ReadError::Syntax { what, line, .. } | ReadError::Unsupported { what, line, .. }) => {
-            return Verdict::Unchecked(format!("{what} on line {line}"));
+            return Worth::Unchecked(format!("{what} on line {line}"));
         }
     };
     let (model, gap) = values(&benchmark, printed);
     let check = check_partial_model(&benchmark.script, &model);
     if let Some(origin) = check.violated.and_then(|violated| benchmark.origins.get(violated)) {
         let (number, line, all) = (origin.number, origin.line, benchmark.assertions);
-        return Verdict::Fails(format!("assertion {number} of {all} (line {line}) is false"));
+        return Worth::Fails(format!("assertion {number} of {all} (line {line}) is false"));
     }
     match gap {
         // A model that was asked for as a whole has to define all symbols, whether or not they matter.
-        Some(gap) if check.unknown > 0 || request == Request::Model => Verdict::Unchecked(gap),
+        Some(gap) if check.unknown > 0 || request == Request::Model => Worth::Unchecked(gap),
         _ if check.unknown > 0 => {
             let (unknown, all) = (check.unknown, benchmark.assertions);
             let script = &benchmark.script;
             let quantified = script.literals(0).iter().any(|&t| script.terms.is_quantified(t));
             let why = if quantified { "quantifiers" } else { "large numbers" };
-            Verdict::Unchecked(format!("{unknown} of {all} assertions cannot be evaluated ({why})"))
+            Worth::Unchecked(format!("{unknown} of {all} assertions cannot be evaluated ({why})"))
         }
-        _ => Verdict::Holds,
+        _ => Worth::Holds,
     }
 }
 
@@ -102,7 +102,7 @@ mod tests {
     const TEXT: &str = "(declare-const x Int)(declare-const |y z| Bool)(declare-const unused Bool)\n\
                         (assert true)\n(assert (or |y z| (< x 3)))\n(assert (not (= x 2)))\n(check-sat)";
 
-    fn of(request: Request, text: &str, output: &str) -> Verdict {
+    fn of(request: Request, text: &str, output: &str) -> Worth {
         let stdout = format!("sat\n{output}");
         match PrintedModel::read(&stdout) {
             Ok(printed) => of_model(request, text, &printed),
@@ -118,12 +118,12 @@ mod tests {
             )
         };
         let of = |output: &str| of(Request::Model, TEXT, output);
-        assert_eq!(of(&define("(- 1)", "false")), Verdict::Holds);
-        assert_eq!(of(&define("5", "true")), Verdict::Holds);
-        let fails = |text: &str| Verdict::Fails(text.to_owned());
+        assert_eq!(of(&define("(- 1)", "false")), Worth::Holds);
+        assert_eq!(of(&define("5", "true")), Worth::Holds);
+        let fails = |text: &str| Worth::Fails(text.to_owned());
         assert_eq!(of(&define("5", "false")), fails("assertion 2 of 3 (line 3) is false"));
         assert_eq!(of(&define("2", "false")), fails("assertion 3 of 3 (line 4) is false"));
-        let unchecked = |text: &str| Verdict::Unchecked(text.to_owned());
+        let unchecked = |text: &str| Worth::Unchecked(text.to_owned());
         assert_eq!(of("((define-fun x () Int 1))"), unchecked("no value for |y z|"));
         // Whatever the missing values are.
         assert_eq!(of("((define-fun x () Int 2))"), fails("assertion 3 of 3 (line 4) is false"));
@@ -134,23 +134,23 @@ mod tests {
     #[test]
     fn models_in_part() {
         let of = |output: &str| of(Request::Values, TEXT, output);
-        assert_eq!(of("((x 1))"), Verdict::Holds);
-        assert_eq!(of("((|y z| true) (x 3))"), Verdict::Holds);
-        assert_eq!(of("((|y z| true))"), Verdict::Unchecked("no value for x".to_owned()));
-        assert_eq!(of("((x 2))"), Verdict::Fails("assertion 3 of 3 (line 4) is false".to_owned()));
+        assert_eq!(of("((x 1))"), Worth::Holds);
+        assert_eq!(of("((|y z| true) (x 3))"), Worth::Holds);
+        assert_eq!(of("((|y z| true))"), Worth::Unchecked("no value for x".to_owned()));
+        assert_eq!(of("((x 2))"), Worth::Fails("assertion 3 of 3 (line 4) is false".to_owned()));
     }
 
     #[test]
     fn what_cannot_be_evaluated() {
         let of = |text: &str| of(Request::Model, text, "()");
-        let unchecked = |text: &str| Verdict::Unchecked(text.to_owned());
+        let unchecked = |text: &str| Worth::Unchecked(text.to_owned());
         assert_eq!(of("(push 1)(check-sat)"), unchecked("push on line 1"));
         assert_eq!(of("(assert\n(and))"), unchecked("arguments are missing on line 2"));
         let text = "(assert (forall ((x Int)) (< x 1)))(assert true)(check-sat)";
         assert_eq!(of(text), unchecked("1 of 2 assertions cannot be evaluated (quantifiers)"));
         assert_eq!(
             of("(assert (forall ((x Int)) (< x 1)))(assert (= 1 2))"),
-            Verdict::Fails("assertion 2 of 2 (line 1) is false".to_owned())
+            Worth::Fails("assertion 2 of 2 (line 1) is false".to_owned())
         );
     }
 
@@ -158,9 +158,9 @@ mod tests {
     fn what_was_cut_off_is_not_checked() {
         let mut stdout = "sat\n((x 2))".to_owned();
         let of = |stdout: String| {
-            let outcome = crate::outcome::Outcome::new(Status::Sat, None);
+            let reading = Reading::new(Status::Sat, None);
             let query = Query { checks: vec![None], request: Request::Values, ..Query::default() };
-            checked(outcome, &query, "no-such-file", &Measured { stdout, ..Measured::default() })
+            checked(reading, &query, "no-such-file", &Measured { stdout, ..Measured::default() })
         };
         let missing = of(stdout.clone());
         assert!(missing.message.is_some_and(|message| message.contains("no-such-file: ")));

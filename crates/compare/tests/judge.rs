@@ -27,7 +27,7 @@ fn agreement_is_clean() {
     let records = [said("z3", Status::Sat), said("cvc5", Status::Sat), said("yices", Status::Timeout)];
     let judgement = judge(&records);
     assert!(judgement.is_clean());
-    assert_eq!(judgement.exit_code(), 0);
+    assert_eq!(judgement.fault(), None);
     assert_eq!(judgement.to_string(), "");
     assert!(judge(&[]).is_clean());
 }
@@ -36,7 +36,7 @@ fn agreement_is_clean() {
 fn solvers_that_got_the_same_blame_themselves() {
     let records = [said("z3", Status::Sat), said("cvc5", Status::Unsat)];
     assert_eq!(kinds(&records), [(Kind::Disagreement, Fault::Solver)]);
-    assert_eq!(judge(&records).exit_code(), 4);
+    assert_eq!(judge(&records).fault(), Some(Fault::Solver));
     let queries = [query("z3", Status::Sat), query("cvc5", Status::Unsat)];
     assert_eq!(kinds(&queries), [(Kind::Disagreement, Fault::Solver)]);
 }
@@ -45,7 +45,7 @@ fn solvers_that_got_the_same_blame_themselves() {
 fn different_encodings_that_disagree_blame_us() {
     let records = [mode("z3", "keep", Status::Sat), mode("z3", "expand", Status::Unsat)];
     assert_eq!(kinds(&records), [(Kind::SelfContradiction, Fault::Ours)]);
-    assert_eq!(judge(&records).exit_code(), 5);
+    assert_eq!(judge(&records).fault(), Some(Fault::Ours));
     let records = [mode("z3", "keep", Status::Sat), mode("cvc5", "expand", Status::Unsat)];
     assert_eq!(kinds(&records), [(Kind::Disagreement, Fault::Ours)]);
     // All that were asked one way say the same, and are wrong.
@@ -109,7 +109,7 @@ fn against_the_known_status() {
     // All that answered say otherwise.
     let all = [known(query("z3", Status::Sat)), known(query("cvc5", Status::Sat))];
     assert_eq!(kinds(&all), [(Kind::Expected, Fault::Status)]);
-    assert_eq!(judge(&all).exit_code(), 4);
+    assert_eq!(judge(&all).fault(), Some(Fault::Status));
     let doubt = "against the known status, but all agree: the status may be wrong; known: unsat";
     assert!(judge(&all).to_string().contains(doubt), "{}", judge(&all));
     let yices = known(query("yices", Status::Unsat));
@@ -145,7 +145,7 @@ specs/model.hp#m: a model fails, a solver's fault; known: sat
     queries: queries/model/cvc5
 ";
     assert_eq!(judge(&sample()).to_string(), expected);
-    assert_eq!(judge(&sample()).exit_code(), 5);
+    assert_eq!(judge(&sample()).fault(), Some(Fault::Ours));
 }
 
 /// A witness says more than what somebody once wrote.
@@ -161,7 +161,7 @@ fn a_checked_witness_refutes_a_status() {
     let first = judgement.to_string().lines().next().map(str::to_owned);
     let expected = "f.hp#o: the known status is wrong, for a checked witness contradicts it; known: sat";
     assert_eq!(first.as_deref(), Some(expected));
-    assert_eq!(judgement.exit_code(), 4);
+    assert_eq!(judgement.fault(), Some(Fault::Status));
     // Without the witness it is the other way round.
     let records = [known(query("z3", Status::Sat)), known(query("liar", Status::Unsat))];
     assert_eq!(kinds(&records), [(Kind::Expected, Fault::Solver)]);

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use hyperplan_compare::contest::Contest;
 use hyperplan_compare::score::{Score, Scores, scores};
 use hyperplan_compare::{Answer, Record, Status, judge};
+use hyperplan_problem::answer::ReasonCode;
 use sample::{run, sample};
 
 fn score_all(records: &[Record]) -> Scores {
@@ -124,6 +125,7 @@ fn unique_and_virtual_best() {
 #[test]
 fn wrong_models_are_wrong() {
     let model = Record {
+        reason_code: Some(ReasonCode::WrongModel),
         message: Some("solver z3 gave a wrong model: p is no path".to_owned()),
         ..run("z3", "a", Status::Error, 1.0)
     };
@@ -186,7 +188,7 @@ fn random_contests_add_up() {
         let mut reversed = records.clone();
         reversed.reverse();
         if records.iter().enumerate().all(|(i, a)| !records[..i].contains(a)) {
-            assert_eq!(judge(&reversed).exit_code(), judge(&records).exit_code(), "round {round}");
+            assert_eq!(judge(&reversed).fault(), judge(&records).fault(), "round {round}");
         }
     }
 }

@@ -3,53 +3,12 @@
 use crate::enumerated::Enumerated;
 use crate::variables::{ByVariable, Numbers};
 use crate::writing::Writer;
+use hyperplan_problem::answer::States;
 use hyperplan_problem::{Objective, PathId, Problem};
 use hyperplan_relevance::{Arena, Error, Limits, Stop, Task};
 use hyperplan_space::{Graph, Graphs};
-use std::fmt;
 use std::sync::Arc;
 use typed_index_collections::TiVec;
-
-/// How states are written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum States {
-    /// A Boolean for each state that can matter at a time.
-    Onehot,
-    /// A bit-vector for each variable.
-    Bitvec,
-    /// An integer for each variable, a real for each that is one.
-    Int,
-    /// A value of a datatype, one for each state of the system, at each time.
-    Enum,
-    /// A real for each variable.
-    Real,
-}
-
-impl fmt::Display for States {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            States::Onehot => "onehot",
-            States::Bitvec => "bitvec",
-            States::Int => "int",
-            States::Enum => "enum",
-            States::Real => "real",
-        })
-    }
-}
-
-impl States {
-    /// Whether states are written one by one.
-    #[must_use]
-    pub fn is_enumerated(self) -> bool {
-        matches!(self, States::Onehot | States::Enum)
-    }
-
-    /// Whether variables are integers or reals.
-    #[must_use]
-    pub fn is_arithmetic(self) -> bool {
-        matches!(self, States::Int | States::Real)
-    }
-}
 
 /// What does not depend on the query: an objective, and how it is going to be written.
 pub struct Encoder<'a> {

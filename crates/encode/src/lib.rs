@@ -26,7 +26,8 @@ mod value;
 mod variables;
 mod writing;
 
-pub use encoder::{Encoder, States};
+pub use encoder::Encoder;
+pub use hyperplan_problem::answer::States;
 pub use hyperplan_relevance::{Error, Goal, Instance, Known, Limits, Narrowing, Relevant, Stop};
 pub use hyperplan_space::Graphs;
 pub use names::Copies;

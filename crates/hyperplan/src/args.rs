@@ -1,7 +1,9 @@
 //! What may be typed. What is meant by it is decided in [`crate::config`].
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use hyperplan_family as family;
+use hyperplan_problem::answer::{Quantifiers, States};
 use std::path::PathBuf;
 
 /// Plans robot motion from objectives that relate several paths at once.
@@ -73,44 +75,42 @@ pub(crate) struct Output {
     pub(crate) format: Format,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Quantifiers {
-    /// Whatever suits the objective and the solver
-    #[default]
-    Auto,
-    /// Leave quantifiers to the solver
-    Keep,
-    /// Copies of the formula for every case, without quantifiers
-    Expand,
-    /// Counterexample-guided
-    Cegis,
+/// The ways to decide quantifiers, with what they mean.
+fn quantifiers() -> impl TypedValueParser<Value = Quantifiers> {
+    let help = |value| match value {
+        Quantifiers::Auto => "Whatever suits the objective and the solver",
+        Quantifiers::Keep => "Leave quantifiers to the solver",
+        Quantifiers::Expand => "Copies of the formula for every case, without quantifiers",
+        Quantifiers::Cegis => "Counterexample-guided",
+    };
+    let values = Quantifiers::ALL.iter().map(|&value| PossibleValue::new(value.name()).help(help(value)));
+    PossibleValuesParser::new(values.collect::<Vec<_>>()).try_map(|name| name.parse())
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(crate) enum States {
-    #[default]
-    Auto,
-    /// A Boolean for each possible state
-    Onehot,
-    /// A bit-vector for each variable
-    Bitvec,
-    /// An integer for each variable; a real for each that is one
-    Int,
-    /// A value of a datatype for each state
-    Enum,
-    /// A real for each variable
-    Real,
+/// The ways to write states, with what they mean; `auto` is none of them.
+fn states() -> impl TypedValueParser<Value = Option<States>> {
+    let help = |value| match value {
+        States::Onehot => "A Boolean for each possible state",
+        States::Bitvec => "A bit-vector for each variable",
+        States::Int => "An integer for each variable; a real for each that is one",
+        States::Enum => "A value of a datatype for each state",
+        States::Real => "A real for each variable",
+    };
+    let values = States::ALL.iter().map(|&value| PossibleValue::new(value.name()).help(help(value)));
+    let values: Vec<PossibleValue> = std::iter::once(PossibleValue::new("auto")).chain(values).collect();
+    PossibleValuesParser::new(values).map(|name| name.parse().ok())
 }
 
 /// How a query is built.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct Encoding {
     /// How quantifiers are decided
-    #[arg(long, value_enum, value_name = "HOW", default_value_t = Quantifiers::Auto)]
+    #[arg(long, value_parser = quantifiers(), value_name = "HOW", default_value_t = Quantifiers::Auto)]
     pub(crate) quantifiers: Quantifiers,
     /// How states are represented
-    #[arg(long, value_enum, value_name = "HOW", default_value_t = States::Auto)]
-    pub(crate) states: States,
+    #[arg(long, value_parser = states(), value_name = "HOW", default_value = "auto")]
+    // By its full name it is a value, not an option that may be left out.
+    pub(crate) states: ::std::option::Option<States>,
     /// Seconds for the whole command
     #[arg(long, value_name = "SECONDS")]
     pub(crate) timeout: Option<f64>,
@@ -183,6 +183,9 @@ pub(crate) struct Solve {
     /// Prints the strategy unchecked
     #[arg(long)]
     pub(crate) no_verify: bool,
+    /// Says on standard output too, in JSON, why an objective has no answer: for comparisons
+    #[arg(long, hide = true)]
+    pub(crate) failures: bool,
     /// Seed of the solver; the same seed gives the same answer where no limit is reached
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) seed: u64,
@@ -231,11 +234,11 @@ pub(crate) struct Emit {
     #[command(flatten)]
     pub(crate) selection: Selection,
     /// How quantifiers are written; several, separated by commas, are a file each
-    #[arg(long, value_enum, value_name = "HOW,...", value_delimiter = ',', default_value = "auto")]
+    #[arg(long, value_parser = quantifiers(), value_name = "HOW,...", value_delimiter = ',', default_value = "auto")]
     pub(crate) quantifiers: Vec<Quantifiers>,
     /// How states are represented; several are a file each
-    #[arg(long, value_enum, value_name = "HOW,...", value_delimiter = ',', default_value = "auto")]
-    pub(crate) states: Vec<States>,
+    #[arg(long, value_parser = states(), value_name = "HOW,...", value_delimiter = ',', default_value = "auto")]
+    pub(crate) states: Vec<Option<States>>,
     /// A file for each value of a constant, such as T
     #[arg(long, value_name = "CONST=LO..HI", value_parser = range)]
     pub(crate) each: Option<(String, i64, i64)>,
@@ -391,11 +394,11 @@ pub(crate) struct Compare {
     #[arg(long, value_name = "SOLVER,...")]
     pub(crate) solver: Option<String>,
     /// How quantifiers are decided, each in turn
-    #[arg(long, value_enum, value_name = "HOW,...", value_delimiter = ',', default_value = "auto")]
+    #[arg(long, value_parser = quantifiers(), value_name = "HOW,...", value_delimiter = ',', default_value = "auto")]
     pub(crate) quantifiers: Vec<Quantifiers>,
     /// How states are represented, each in turn
-    #[arg(long, value_enum, value_name = "HOW,...", value_delimiter = ',', default_value = "auto")]
-    pub(crate) states: Vec<States>,
+    #[arg(long, value_parser = states(), value_name = "HOW,...", value_delimiter = ',', default_value = "auto")]
+    pub(crate) states: Vec<Option<States>>,
     /// Replaces the value of a constant, by each of several in turn; with several constants, all combinations
     #[arg(long, value_name = "NAME=VALUE,...|LO..HI", value_parser = settings)]
     pub(crate) set: Vec<Settings>,

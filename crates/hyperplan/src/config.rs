@@ -7,7 +7,7 @@ use crate::output::check_writable;
 use crate::report::Picture;
 use crate::signals;
 use chrono::{DateTime, NaiveDate, Utc};
-use hyperplan_plan::{Config, Quantifiers, States, Status, Track};
+use hyperplan_plan::{Config, States, Status, Track};
 use hyperplan_solver::{Deadline, Spec};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -37,8 +37,8 @@ impl Solve {
         let plan = Config {
             rivals,
             cross_check: args.cross_check.as_deref().map(self::solver).transpose()?,
-            quantifiers: quantifiers(args.encoding.quantifiers),
-            states: states(args.encoding.states),
+            quantifiers: args.encoding.quantifiers,
+            states: args.encoding.states,
             deadline: deadline(args.encoding.timeout)?,
             verify: !args.no_verify,
             seed: args.seed,
@@ -69,29 +69,9 @@ fn solvers(text: &str) -> Outcome<(Spec, Vec<Spec>)> {
     Ok((first, specs.collect()))
 }
 
-pub(crate) fn quantifiers(typed: args::Quantifiers) -> Quantifiers {
-    match typed {
-        args::Quantifiers::Auto => Quantifiers::Auto,
-        args::Quantifiers::Keep => Quantifiers::Keep,
-        args::Quantifiers::Expand => Quantifiers::Expand,
-        args::Quantifiers::Cegis => Quantifiers::Cegis,
-    }
-}
-
-pub(crate) fn states(typed: args::States) -> Option<States> {
-    match typed {
-        args::States::Auto => None,
-        args::States::Onehot => Some(States::Onehot),
-        args::States::Bitvec => Some(States::Bitvec),
-        args::States::Int => Some(States::Int),
-        args::States::Enum => Some(States::Enum),
-        args::States::Real => Some(States::Real),
-    }
-}
-
 /// What was asked for, as it is typed.
 pub(crate) fn states_name(states: Option<States>) -> String {
-    states.map_or_else(|| "auto".to_owned(), |states| states.to_string())
+    states.map_or("auto", States::name).to_owned()
 }
 
 pub(crate) fn track(typed: args::Track) -> Track {

@@ -20,20 +20,6 @@ pub(crate) enum Status {
     Bug = 5,
 }
 
-impl Status {
-    /// The status with that number; unknown numbers are our bug.
-    pub(crate) fn from_code(code: u8) -> Self {
-        match code {
-            0 => Status::Good,
-            1 => Status::Unrealizable,
-            2 => Status::Input,
-            3 => Status::Undecided,
-            4 => Status::Solver,
-            _ => Status::Bug,
-        }
-    }
-}
-
 impl From<Status> for ExitCode {
     fn from(status: Status) -> ExitCode {
         ExitCode::from(status as u8)

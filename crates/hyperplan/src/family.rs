@@ -1,6 +1,7 @@
 //! The problems that a file describes for the values of one constant.
 
 use crate::args::{self, Minimize};
+use crate::explain::{Explain, Why};
 use crate::failure::{Failure, Outcome};
 use crate::load::{self, Loaded};
 use crate::output::Output;
@@ -84,6 +85,7 @@ impl<'a> Family<'a> {
         base: &Loaded,
         objective: &Objective,
         config: &Config,
+        explain: Explain<'_>,
     ) -> Result<(plan::Outcome, Searched), MinimizeError<Failure>> {
         let mut time = base.time;
         let mut problem = |value: i64| {
@@ -93,7 +95,8 @@ impl<'a> Family<'a> {
             problem
         };
         let least = minimize(&objective.name, self.range.clone(), &mut problem, config)?;
-        let (below, words) = self.said(&least);
+        let undecided = least.undecided.as_ref().map(|reason| Why::new(reason, explain));
+        let (below, words) = self.said(&least, undecided.as_ref());
         let minimized = Minimized {
             constant: self.constant.to_owned(),
             range: (*self.range.start(), *self.range.end()),
@@ -102,16 +105,16 @@ impl<'a> Family<'a> {
         };
         let loaded =
             Loaded { file: base.file.clone(), problem: least.problem, sources: base.sources.clone(), time };
-        Ok((least.outcome, Searched { loaded, minimized, undecided: least.undecided, words }))
+        Ok((least.outcome, Searched { loaded, minimized, undecided, words }))
     }
 
     /// What is known of smaller values, and the whole result in words.
-    fn said(&self, least: &Least) -> (Below, String) {
+    fn said(&self, least: &Least, undecided: Option<&Why>) -> (Below, String) {
         let Least { value, proved, .. } = *least;
         let (name, first) = (self.constant, *self.range.start());
         let values = |lo: i64, hi: i64| if lo == hi { lo.to_string() } else { format!("{lo}..{hi}") };
         let below = if proved == first { Below::OutOfRange } else { Below::Unrealizable };
-        match (least.outcome.verdict, &least.undecided) {
+        match (least.outcome.verdict, undecided.map(|why| &why.words)) {
             (Verdict::Realizable, Some(reason)) => {
                 let open = values(proved, value - 1);
                 (Below::Unknown, format!("realizable with {name} = {value}, unknown with {open}: {reason}"))
@@ -127,7 +130,7 @@ impl<'a> Family<'a> {
                 (below, format!("unrealizable with {name} = {}", values(first, value)))
             }
             (Verdict::Unknown, reason) => {
-                let reason = reason.as_deref().unwrap_or("undecided");
+                let reason = reason.map_or("undecided", String::as_str);
                 let below = if value == proved { below } else { Below::Unknown };
                 (below, format!("unknown with {name} = {value}: {reason}"))
             }
@@ -158,7 +161,7 @@ pub(crate) struct Searched {
     pub(crate) loaded: Loaded,
     pub(crate) minimized: Minimized,
     /// Why the value found may not be the least.
-    pub(crate) undecided: Option<String>,
+    pub(crate) undecided: Option<Why>,
     /// The result, on one line.
     pub(crate) words: String,
 }

@@ -4,6 +4,7 @@ mod args;
 mod commands;
 mod config;
 mod configuration;
+mod explain;
 mod failure;
 mod family;
 mod instances;
@@ -19,10 +20,6 @@ use failure::{Outcome, Status};
 use output::Output;
 use std::process::ExitCode;
 
-/// Expressions nest some thousand levels deep, and everything that walks them recurses: more than the main thread
-/// has on some systems.
-pub(crate) const STACK: usize = 256 << 20;
-
 fn main() -> ExitCode {
     let cli = match args::Cli::try_parse() {
         Ok(cli) => cli,
@@ -30,7 +27,8 @@ fn main() -> ExitCode {
     };
     let run = || run(&cli);
     std::thread::scope(|scope| {
-        let worker = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, run);
+        // Its stack is the same on all systems.
+        let worker = std::thread::Builder::new().spawn_scoped(scope, run);
         // A thread that panicked has said so; that is our bug.
         worker.map_or_else(|_| run(), |w| w.join().unwrap_or(ExitCode::from(Status::Bug)))
     })

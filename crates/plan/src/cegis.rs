@@ -12,7 +12,9 @@
 //! instance evaluates to the counterexample, so that candidate does not come back; over finite systems there are
 //! finitely many, and the search ends.
 
+use crate::fact::Reason;
 use crate::oracle::{Dialogue, Oracle, Stop};
+use crate::prepare::is_finite;
 use hyperplan_encode::{Copies, Encoder, Env, Goal, Instance, Known, Narrowing, Query, Relevant};
 use hyperplan_problem::PathId;
 use hyperplan_smt::{Model, Term};
@@ -125,7 +127,7 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
             }
             self.checks += 1;
             if self.most_checks.is_some_and(|most| self.checks > most) {
-                return Err(Stop::Unknown(format!("no end after {} counterexamples", self.checks - 1)));
+                return Err(Stop::Unknown(Reason::NoEnd(self.checks - 1)));
             }
             if !self.oracle.check(&mut round.dialogue, &round.query.script)? {
                 return Ok(found);
@@ -185,12 +187,10 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
     /// A model that satisfies its query describes paths. Where variables have no bounds, its numbers may be too large
     /// for ours: instance by instance they can grow without end.
     fn no_path(&self, round: &Round<'_, 'a>) -> Stop {
-        let objective = self.encoder.objective;
-        if objective.paths.iter().any(|path| !self.encoder.problem.systems[path.system].is_finite()) {
-            let advice = "--quantifiers keep leaves the search to the solver";
-            return Stop::Unknown(format!("numbers in the search grew beyond 64 bits; {advice}"));
+        if !is_finite(self.encoder.problem, self.encoder.objective) {
+            return Stop::Unknown(Reason::LargeNumbers);
         }
-        self.oracle.wrong(&round.dialogue, "it describes no path").into()
+        self.oracle.no_path(&round.dialogue).into()
     }
 
     /// The paths of a game under a model; `None` where one of its instances describes no path.

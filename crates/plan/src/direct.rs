@@ -190,7 +190,7 @@ impl Direct<'_, '_> {
         for (at, path) in self.env.iter().enumerate() {
             if let Some(path) = *path {
                 let decoded = self.query.paths.decode(path, &model);
-                known[at] = Some(decoded.ok_or_else(|| oracle.wrong(&dialogue, "it describes no path"))?);
+                known[at] = Some(decoded.ok_or_else(|| oracle.no_path(&dialogue))?);
             }
         }
         Ok(Some(known))

@@ -1,12 +1,8 @@
-//! What a solver got wrong, kept as a file for its developers.
+//! What a solver got wrong, as a file for its developers.
 
-use crate::config::Config;
 use hyperplan_smt::{Ask, Header, Model, Script, Term, WriteOptions, term_text, value_text, write_script};
 use hyperplan_solver::Identity;
 use std::fmt::Write as _;
-use std::fs::OpenOptions;
-use std::io::{self, Write as _};
-use std::path::PathBuf;
 
 /// What is wrong.
 pub(crate) enum Claim<'a> {
@@ -16,9 +12,9 @@ pub(crate) enum Claim<'a> {
     Both { unsat: &'a Identity, sat: &'a Identity, model: &'a Model },
 }
 
-/// A query with what was said about it, as the text of a file.
-pub(crate) struct Evidence {
-    /// For the name of the file.
+/// A query with what was said about it, as the text of a file that is worth keeping.
+#[derive(Clone, Debug)]
+pub struct Evidence {
     solver: String,
     text: Vec<u8>,
 }
@@ -51,29 +47,16 @@ impl Evidence {
         Evidence { solver: solver.clone(), text }
     }
 
-    /// Writes the file: beside the other queries, if these are kept, else among the temporary files. Says where, or why
-    /// not.
-    pub(crate) fn keep(&self, config: &Config) -> String {
-        match self.write(config) {
-            Ok(path) => format!("which is kept in {}", path.display()),
-            Err(error) => format!("which could not be kept: {error}"),
-        }
+    /// Who is said to be wrong, for the name of the file.
+    #[must_use]
+    pub fn solver(&self) -> &str {
+        &self.solver
     }
 
-    fn write(&self, config: &Config) -> io::Result<PathBuf> {
-        let folder = config.queries.clone().unwrap_or_else(std::env::temp_dir);
-        std::fs::create_dir_all(&folder)?;
-        let name: String =
-            self.solver.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-        for number in 1..=9999_u32 {
-            let path = folder.join(format!("hyperplan-fault-{number:04}-{name}.smt2"));
-            match OpenOptions::new().write(true).create_new(true).open(&path) {
-                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
-                Err(error) => return Err(error),
-                Ok(mut file) => return file.write_all(&self.text).map(|()| path),
-            }
-        }
-        Err(io::ErrorKind::AlreadyExists.into())
+    /// The text of the file.
+    #[must_use]
+    pub fn text(&self) -> &[u8] {
+        &self.text
     }
 }
 

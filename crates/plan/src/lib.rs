@@ -7,21 +7,26 @@
 
 mod cegis;
 mod config;
-mod cross_check;
+mod confirm;
+mod decide;
 mod direct;
 mod emit;
 mod evidence;
+mod fact;
 mod lasting;
 mod lint;
 mod minimize;
 mod oracle;
 mod prepare;
 mod race;
+mod search;
 mod solve;
 
-pub use config::{Config, Error, Outcome, Quantifiers, Seconds, Verdict, Verified};
+pub use config::{Config, Outcome, Quantifiers, Seconds, States, Verdict, Verified};
 pub use emit::{EmitConfig, Emitted, Status, Track, emit, strategy_of_model};
-pub use hyperplan_encode::{Limits, States};
-pub use lint::{Budget, Lints, lint, lint_systems};
-pub use minimize::{Family, Least, MinimizeError, minimize};
+pub use evidence::Evidence;
+pub use fact::{Because, Error, Fallen, Fault, Note, Reason, Unsupported, Worth, Wrong};
+pub use hyperplan_encode::{Error as EncodeError, Limits};
+pub use lint::{Budget, Lints, Uninspected, lint, lint_systems};
+pub use minimize::{Least, MinimizeError, ProblemOf, minimize};
 pub use solve::solve;

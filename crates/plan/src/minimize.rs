@@ -13,12 +13,15 @@
 //!
 //! Systems that do not change with the constant are enumerated once.
 
-use crate::config::{Config, Error, Outcome, Seconds, Verdict};
+use crate::config::{Config, Outcome, Seconds, Verdict};
+use crate::decide::SLACKS;
+use crate::fact::{Error, Reason, Unsupported};
 use crate::lasting::{conjuncts, lasting};
-use crate::solve::{SLACKS, solve_sharing};
+use crate::prepare::is_existential;
+use crate::solve::solve_sharing;
 use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Narrowing};
-use hyperplan_problem::{FormulaId, Node, Objective, Problem, Quantifier};
-use hyperplan_solver::Told;
+use hyperplan_problem::{FormulaId, Node, Objective, Problem};
+use hyperplan_solver::{QuerySize, Unknown};
 use std::ops::RangeInclusive;
 use std::time::Instant;
 
@@ -35,7 +38,7 @@ pub struct Least {
     /// Every smaller value of the range is unrealizable.
     pub proved: i64,
     /// Why the search ended before `proved` reached a realizable `value`.
-    pub undecided: Option<String>,
+    pub undecided: Option<Reason>,
 }
 
 /// Why there is no answer at all.
@@ -55,27 +58,27 @@ pub enum MinimizeError<E> {
 }
 
 /// The problem for each value of a constant.
-pub type Family<'a, E> = &'a mut dyn FnMut(i64) -> Result<Problem, E>;
+pub type ProblemOf<'a, E> = &'a mut dyn FnMut(i64) -> Result<Problem, E>;
 
 /// The least value of the range for which the objective of that name is realizable. The deadline is for all values
 /// together. Of an empty range the first value is asked.
 ///
 /// # Errors
-/// Those of the family, for a value that has to be asked, and those of [`crate::solve()`].
+/// Those of the problems, for a value that has to be asked, and those of [`crate::solve()`].
 pub fn minimize<E>(
     objective: &str,
     range: RangeInclusive<i64>,
-    family: Family<'_, E>,
+    problem_of: ProblemOf<'_, E>,
     config: &Config,
 ) -> Result<Least, MinimizeError<E>> {
     let (low, high) = (*range.start(), *range.end().max(range.start()));
-    let problem = family(low).map_err(MinimizeError::Problem)?;
+    let problem = problem_of(low).map_err(MinimizeError::Problem)?;
     let parts = conjuncts(&find(&problem, objective, low)?.formula);
     let chain = Chain { end: low, whole: !parts.is_empty(), parts, problem };
     let graphs = Graphs::default();
-    let mut search = Search {
+    let mut minimizer = Minimizer {
         objective,
-        family,
+        problem_of,
         config,
         graphs,
         chain,
@@ -83,14 +86,14 @@ pub fn minimize<E>(
         high,
         seconds: Seconds::default(),
         rounds: 0,
-        largest: Told::default(),
+        largest: QuerySize::default(),
     };
-    search.refute()?;
-    search.run()
+    minimizer.refute()?;
+    minimizer.run()
 }
 
 fn find<'p, E>(problem: &'p Problem, name: &str, value: i64) -> Result<&'p Objective, MinimizeError<E>> {
-    let missing = || Error::Unsupported(format!("there is no objective {name}"));
+    let missing = || Error::from(Unsupported::NoObjective(name.to_owned()));
     problem.objective(name).ok_or_else(|| MinimizeError::Solve { value, error: missing() })
 }
 
@@ -105,9 +108,9 @@ struct Chain {
     problem: Problem,
 }
 
-struct Search<'a, E> {
+struct Minimizer<'a, E> {
     objective: &'a str,
-    family: Family<'a, E>,
+    problem_of: ProblemOf<'a, E>,
     config: &'a Config,
     graphs: Graphs,
     chain: Chain,
@@ -116,7 +119,7 @@ struct Search<'a, E> {
     high: i64,
     seconds: Seconds,
     rounds: u32,
-    largest: Told,
+    largest: QuerySize,
 }
 
 /// An answer for a value.
@@ -152,9 +155,9 @@ impl Steps {
     }
 }
 
-impl<E> Search<'_, E> {
+impl<E> Minimizer<'_, E> {
     fn problem(&mut self, value: i64) -> Result<Problem, MinimizeError<E>> {
-        (self.family)(value).map_err(MinimizeError::Problem)
+        (self.problem_of)(value).map_err(MinimizeError::Problem)
     }
 
     /// Follows the chain up to a value. The deadline ends it, and so does a value without a problem: it may never
@@ -162,7 +165,7 @@ impl<E> Search<'_, E> {
     fn follow(&mut self, value: i64) {
         while self.chain.end < value && !self.chain.parts.is_empty() {
             let next = self.chain.end + 1;
-            let problem = if self.config.deadline.passed() { None } else { (self.family)(next).ok() };
+            let problem = if self.config.deadline.passed() { None } else { (self.problem_of)(next).ok() };
             let chain = &mut self.chain;
             let lasts = problem.as_ref().and_then(|problem| {
                 let (from, to) =
@@ -249,7 +252,7 @@ impl<E> Search<'_, E> {
                     steps.grow();
                 }
                 Verdict::Unknown => {
-                    let reason = solved.outcome.reason.clone().unwrap_or_else(|| "unknown".to_owned());
+                    let reason = solved.outcome.reason.clone().unwrap_or(Reason::Solver(Unknown::Unsaid));
                     return Ok(self.conclude(best.unwrap_or(solved), Some(reason)));
                 }
             }
@@ -264,15 +267,15 @@ impl<E> Search<'_, E> {
         self.seconds.solve += outcome.seconds.solve;
         self.seconds.verify += outcome.seconds.verify;
         self.rounds += outcome.iterations;
-        self.largest = std::mem::take(&mut self.largest).max(outcome.told.clone());
+        self.largest = std::mem::take(&mut self.largest).max(outcome.size.clone());
         Ok(Solved { value, problem, outcome })
     }
 
-    fn conclude(self, solved: Solved, undecided: Option<String>) -> Least {
+    fn conclude(self, solved: Solved, undecided: Option<Reason>) -> Least {
         let Solved { value, problem, mut outcome } = solved;
         outcome.seconds = self.seconds;
         outcome.iterations = self.rounds;
-        outcome.told = self.largest;
+        outcome.size = self.largest;
         Least { value, problem, outcome, proved: self.low, undecided }
     }
 }
@@ -287,8 +290,7 @@ fn hopeless(
 ) -> Result<bool, encode::Error> {
     let stop = || config.deadline.passed();
     let encoder = Encoder::sharing(problem, objective, config.states, config.limits, &stop, graphs)?;
-    let exists = objective.paths.first().is_some_and(|path| path.quantifier == Quantifier::Exists);
-    if !exists || !encoder.states.is_enumerated() {
+    if !is_existential(objective) || !encoder.states.is_enumerated() {
         return Ok(false);
     }
     if !objective.paths.keys().all(|path| encoder.has_path(path) == Some(true)) {

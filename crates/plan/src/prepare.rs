@@ -1,8 +1,19 @@
 //! What must be settled before quantifiers are: whether paths exist at all, and whether they can go on.
 
+use crate::fact::Reason;
 use crate::oracle::{Oracle, Stop};
 use hyperplan_encode::{Encoder, Goal, Query, Relevant};
-use hyperplan_problem::{Expr, Mode, Node, Objective, PathId, Quantifier};
+use hyperplan_problem::{Expr, Mode, Node, Objective, PathId, Problem, Quantifier};
+
+/// Whether the objective begins with `exists`, so that its leading block is to make the formula true.
+pub(crate) fn is_existential(objective: &Objective) -> bool {
+    objective.paths.first().is_none_or(|path| path.quantifier == Quantifier::Exists)
+}
+
+/// Whether every path has finitely many states to be in.
+pub(crate) fn is_finite(problem: &Problem, objective: &Objective) -> bool {
+    objective.paths.iter().all(|path| problem.systems[path.system].is_finite())
+}
 
 /// In bounded mode a path counts only if it can go on for ever. Where the states were not enumerated, this is known
 /// only if no state at all is a dead end.
@@ -18,11 +29,7 @@ pub(crate) fn no_dead_ends(encoder: &Encoder<'_>, oracle: &mut Oracle<'_>) -> Re
         let Some(script) = encoder.writer.stuck(path) else { continue };
         let mut dialogue = oracle.open(1, false)?;
         if oracle.check(&mut dialogue, &script)? {
-            return Err(Stop::Unknown(format!(
-                "system {} is too large to enumerate and has states without transitions, so it is not known which \
-                 paths go on for ever; use `absorb`, or `within K`",
-                encoder.task.system(path).name
-            )));
+            return Err(Stop::Unknown(Reason::DeadEnds { system: encoder.task.system(path).name.clone() }));
         }
     }
     Ok(())

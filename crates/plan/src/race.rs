@@ -1,22 +1,19 @@
 //! Several solvers search at the same time: the first verified answer counts.
 
-use crate::config::{Config, Error, Outcome, Verdict};
-use crate::solve::solve;
+use crate::config::{Config, Outcome, Verdict};
+use crate::fact::{Error, Fallen, Fault, Note, Reason};
+use crate::search::search;
+use hyperplan_encode::Graphs;
 use hyperplan_problem::{Objective, Problem};
+use hyperplan_solver::Unknown;
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// What recurses, recurses over the nesting of a formula: as much stack as the command gives its own thread.
-const STACK: usize = 256 << 20;
-
 /// How long the losers may take to end their processes themselves. What they do besides, such as verifying an
 /// answer that came late, nobody waits for.
 const GRACE: Duration = Duration::from_millis(500);
-
-/// The exit code of a bug of ours.
-const BUG: u8 = 5;
 
 /// What came of one search, with the name of its solver.
 type Finish = (usize, Result<Outcome, Error>);
@@ -38,12 +35,12 @@ pub(crate) fn race(problem: &Problem, objective: &Objective, config: &Config) ->
             ..config.clone()
         };
         let (send, question) = (send.clone(), Arc::clone(&question));
-        let search = move || {
-            let result = solve(&question.0, &question.1, &own);
+        let lone = move || {
+            let result = search(&question.0, &question.1, &own, &Graphs::default());
             // When there is a winner, nobody may listen any more.
             let _ = send.send((lane, result));
         };
-        let started = thread::Builder::new().stack_size(STACK).spawn(search);
+        let started = thread::Builder::new().spawn(lone);
         started.map_err(|source| {
             deadline.cancel();
             Error::Solver(hyperplan_solver::Error::Io { what: "cannot start a thread".to_owned(), source })
@@ -80,7 +77,7 @@ fn wait(receive: &Receiver<Finish>) {
 fn with_failures(mut winner: Outcome, names: &[String], losers: Vec<Finish>) -> Outcome {
     for (lane, result) in losers {
         if let Err(error) = result {
-            winner.notes.push(format!("{} gave no answer: {error}", names[lane]));
+            winner.notes.push(Note::Lost { solver: names[lane].clone(), error: Arc::new(error) });
         }
     }
     winner
@@ -89,29 +86,40 @@ fn with_failures(mut winner: Outcome, names: &[String], losers: Vec<Finish>) -> 
 /// Without a winner: an undecided outcome with all reasons; without that, all failures.
 fn undecided(names: &[String], losers: Vec<Finish>) -> Result<Outcome, Error> {
     let (mut undecided, mut errors, mut reasons) = (None::<Outcome>, Vec::new(), Vec::new());
-    let mut alike = true;
     for (lane, result) in losers {
-        let name = &names[lane];
-        match result {
-            Ok(outcome) => {
-                reasons.push(format!("{name}: {}", outcome.reason.as_deref().unwrap_or("unknown")));
-                let first = undecided.get_or_insert_with(|| outcome.clone());
-                alike &= first.reason == outcome.reason;
+        let name = names[lane].clone();
+        let fallen = match result {
+            Ok(mut outcome) => {
+                let reason = outcome.reason.take().unwrap_or(Reason::Solver(Unknown::Unsaid));
+                undecided.get_or_insert(outcome);
+                Fallen::Undecided(reason)
             }
             Err(error) => {
-                reasons.push(format!("{name}: {error}"));
-                errors.push((name.clone(), error));
+                let error = Arc::new(error);
+                errors.push((name.clone(), Arc::clone(&error)));
+                Fallen::Failed(error)
             }
-        }
+        };
+        reasons.push((name, fallen));
     }
     match undecided {
         // A bug of ours is not to be lost among what was undecided.
-        Some(mut outcome) if errors.iter().all(|(_, error)| error.exit_code() < BUG) => {
-            if !errors.is_empty() || !alike {
-                outcome.reason = Some(reasons.join("; "));
-            }
-            Ok(outcome)
+        Some(outcome) if errors.iter().all(|(_, error)| error.fault() < Fault::Ours) => {
+            Ok(Outcome { reason: Some(together(reasons)), ..outcome })
         }
         _ => Err(Error::Race(errors)),
+    }
+}
+
+/// One reason for all, where it reads the same.
+fn together(mut reasons: Vec<(String, Fallen)>) -> Reason {
+    let first = reasons.first().map(|(_, fallen)| fallen.to_string());
+    let alike = |fallen: &Fallen| first.as_ref().is_some_and(|first| fallen.to_string() == *first);
+    match reasons.iter().all(|(_, fallen)| matches!(fallen, Fallen::Undecided(_)) && alike(fallen)) {
+        true => match reasons.pop() {
+            Some((_, Fallen::Undecided(reason))) => reason,
+            other => Reason::Several(other.into_iter().collect()),
+        },
+        false => Reason::Several(reasons),
     }
 }

@@ -68,7 +68,7 @@ pub enum Error {
         limit: usize,
     },
     /// A universally quantified path has too many cases to be expanded.
-    #[error("path {path} has more than {limit} cases; use --quantifiers cegis")]
+    #[error("path {path} has more than {limit} cases")]
     TooManyCases {
         /// The path variable.
         path: String,
@@ -79,19 +79,19 @@ pub enum Error {
     #[error("interrupted")]
     Interrupted,
     /// States are to be enumerated, but there are too many.
-    #[error("system {system} has too many states to enumerate; use --states bitvec")]
+    #[error("system {system} has too many states to enumerate")]
     NotEnumerable {
         /// The system.
         system: String,
     },
     /// A system has integers or reals without bounds.
-    #[error("system {system} has variables without bounds, which takes --states int or real")]
+    #[error("system {system} has variables without bounds")]
     Unbounded {
         /// The system.
         system: String,
     },
     /// A system is about integers in a way that reals cannot express.
-    #[error("{what}, which reals cannot express; use --states int")]
+    #[error("{what}, which reals cannot express")]
     NotReal {
         /// What it has.
         what: String,

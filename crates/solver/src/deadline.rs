@@ -1,5 +1,6 @@
 //! When to stop.
 
+use crate::error::Unknown;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -77,9 +78,9 @@ impl Deadline {
         self.at.map(|at| at.saturating_duration_since(Instant::now()))
     }
 
-    /// Why it stopped: `timeout` or `interrupted`.
+    /// Why it stopped: [`Unknown::Timeout`] or [`Unknown::Interrupted`].
     #[must_use]
-    pub fn reason(&self) -> &'static str {
-        if self.cancelled() { "interrupted" } else { "timeout" }
+    pub fn reason(&self) -> Unknown {
+        if self.cancelled() { Unknown::Interrupted } else { Unknown::Timeout }
     }
 }

@@ -2,6 +2,49 @@
 
 use std::io;
 
+/// Why a solver does not know an answer.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Unknown {
+    /// The time is up.
+    #[error("timeout")]
+    Timeout,
+    /// The search was cancelled.
+    #[error("interrupted")]
+    Interrupted,
+    /// The system gave the solver no more memory.
+    #[error("out of memory")]
+    Memory,
+    /// The search has taken the memory that it was allowed.
+    #[error("memory limit of {mib} MiB reached")]
+    MemoryLimit {
+        /// In MiB.
+        mib: u64,
+    },
+    /// The solver's methods do not decide the query, in its words.
+    #[error("{0}")]
+    Incomplete(String),
+    /// The solver's own reason.
+    #[error("{0}")]
+    Said(String),
+    /// The solver does not say why.
+    #[error("unknown")]
+    Unsaid,
+}
+
+impl From<String> for Unknown {
+    /// What a solver's words mean.
+    fn from(words: String) -> Self {
+        match words.as_str() {
+            "timeout" => Unknown::Timeout,
+            "interrupted" => Unknown::Interrupted,
+            "out of memory" => Unknown::Memory,
+            "unknown" => Unknown::Unsaid,
+            _ if words.contains("incomplete") => Unknown::Incomplete(words),
+            _ => Unknown::Said(words),
+        }
+    }
+}
+
 /// A failure of a solver, or of reaching it.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {

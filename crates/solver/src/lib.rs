@@ -16,11 +16,12 @@ mod session;
 mod transcript;
 
 pub use deadline::Deadline;
-pub use error::Error;
+pub use error::{Error, Unknown};
 #[doc(hidden)]
 pub use external::understand_output;
 pub use external::{
     Catalog, ConfigError, Facts, Found, Install, PrintedModel, PrintedModelError, Profile, Standalone,
     discover, end_with_parent,
 };
-pub use session::{Answer, Identity, Options, Session, Spec, Told, open};
+pub use session::{Answer, Identity, Options, QuerySize, Session, Spec, open};
+pub use transcript::new_query_file;

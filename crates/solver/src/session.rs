@@ -8,7 +8,7 @@ use hyperplan_smt::{Script, Status, Term, Value};
 use serde::Deserialize;
 
 use crate::deadline::Deadline;
-use crate::error::Error;
+use crate::error::{Error, Unknown};
 use crate::external::{self, Profile};
 
 /// The answer to a check.
@@ -18,8 +18,8 @@ pub enum Answer {
     Sat,
     /// Unsatisfiable.
     Unsat,
-    /// Neither was found: `timeout`, `interrupted`, or the solver's own reason.
-    Unknown(String),
+    /// Neither was found, and why.
+    Unknown(Unknown),
 }
 
 /// Which solver answered.
@@ -31,9 +31,9 @@ pub struct Identity {
     pub version: String,
 }
 
-/// What a solver was told, and how much; ordered by that.
+/// What a query was like, as the solver got it; ordered by size.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug, Default)]
-pub struct Told {
+pub struct QuerySize {
     /// Assertions; of the embedded engine, the clauses that they became.
     pub clauses: usize,
     /// Declared symbols; of the embedded engine, the SAT variables.
@@ -45,7 +45,7 @@ pub struct Told {
 }
 
 /// A dialogue with a solver about one growing script.
-pub trait Session {
+pub trait Session: Send {
     /// Feeds what is new in the script since the last call, then asks whether it is satisfiable
     /// under the assumptions, Boolean terms. One session takes one script.
     ///
@@ -64,7 +64,7 @@ pub trait Session {
     fn identity(&self) -> Identity;
 
     /// What it was told up to the last check.
-    fn told(&self) -> Told;
+    fn size(&self) -> QuerySize;
 }
 
 /// Which solver to use.

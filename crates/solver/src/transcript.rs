@@ -2,7 +2,7 @@
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use hyperplan_smt::Status;
 
@@ -59,20 +59,28 @@ impl Drop for Transcript {
     }
 }
 
-/// A new file in the directory, which is made if need be: the first number that is free.
+/// A new file for a query, in the directory, which is made if need be: the first number that is free.
 pub(crate) fn numbered(directory: &Path, solver: &str) -> Result<File, Error> {
-    fs::create_dir_all(directory).map_err(|source| cannot_keep(directory, source))?;
+    let created = new_query_file(directory, "", solver);
+    created.map(|(_, file)| file).map_err(|source| cannot_keep(directory, source))
+}
+
+/// A new file for a query of a solver, in a directory, which is made if need be. Its name has a number, the first that is
+/// free.
+///
+/// # Errors
+/// When it cannot be made.
+pub fn new_query_file(directory: &Path, prefix: &str, solver: &str) -> io::Result<(PathBuf, File)> {
+    fs::create_dir_all(directory)?;
     let name: String = solver.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-    (1..=999_999_u32)
-        .find_map(|number| {
-            let path = directory.join(format!("{number:04}-{name}.smt2"));
-            match OpenOptions::new().write(true).create_new(true).open(path) {
-                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => None,
-                result => Some(result),
-            }
-        })
-        .unwrap_or_else(|| Err(io::ErrorKind::AlreadyExists.into()))
-        .map_err(|source| cannot_keep(directory, source))
+    for number in 1..=999_999_u32 {
+        let path = directory.join(format!("{prefix}{number:04}-{name}.smt2"));
+        match OpenOptions::new().write(true).create_new(true).open(&path) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            result => return result.map(|file| (path, file)),
+        }
+    }
+    Err(io::ErrorKind::AlreadyExists.into())
 }
 
 pub(crate) fn cannot_keep(directory: &Path, source: io::Error) -> Error {

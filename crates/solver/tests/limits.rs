@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use common::installed;
 use hyperplan_smt::{Script, Sort, Term, Terms};
-use hyperplan_solver::{Answer, Deadline, Error, Options, Spec, open};
+use hyperplan_solver::{Answer, Deadline, Error, Options, Spec, Unknown, open};
 
 fn booleans(terms: &mut Terms, count: u32) -> Vec<Term> {
     let stem = terms.stem("x");
@@ -170,7 +170,7 @@ fn the_engine_stops_at_the_deadline() {
         open(&Spec::Builtin, &Options { seed: 7, ..Options::default() }).expect("it is built in");
     let start = std::time::Instant::now();
     let answer = session.check(&script, &[], &Deadline::after(Duration::from_millis(300))).expect("no error");
-    assert_eq!(answer, Answer::Unknown("timeout".to_owned()));
+    assert_eq!(answer, Answer::Unknown(Unknown::Timeout));
     assert!(start.elapsed() < Duration::from_secs(10));
     assert!(matches!(session.values(&script, &at[..1]), Err(Error::NoModel { .. })));
 }
@@ -207,7 +207,7 @@ fn a_session_knows_how_much_it_was_told() {
         for pair in xs[..4].chunks(2) {
             script.clause(pair);
             session.check(&script, &[], &Deadline::never()).expect("an answer");
-            told.push(session.told());
+            told.push(session.size());
         }
         // The engine has a variable and a clause of its own, for what is true.
         let own = usize::from(spec == Spec::Builtin);

@@ -8,7 +8,7 @@ mod pigeons;
 
 use std::time::Duration;
 
-use hyperplan_solver::{Answer, Deadline, Options, Spec, open};
+use hyperplan_solver::{Answer, Deadline, Options, Spec, Unknown, open};
 use pigeons::pigeons;
 
 #[test]
@@ -17,5 +17,5 @@ fn search_stops_at_the_memory_limit() {
     let options = Options { memory_mib: Some(1), ..Options::default() };
     let mut session = open(&Spec::Builtin, &options).expect("it is built in");
     let answer = session.check(&script, &[], &Deadline::after(Duration::from_secs(300))).expect("no error");
-    assert_eq!(answer, Answer::Unknown("memory limit of 1 MiB reached".to_owned()));
+    assert_eq!(answer, Answer::Unknown(Unknown::MemoryLimit { mib: 1 }));
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use hyperplan_smt::{Script, Sort, Term};
-use hyperplan_solver::{Answer, Deadline, Error, Options, Session, Spec, open};
+use hyperplan_solver::{Answer, Deadline, Error, Options, Session, Spec, Unknown, open};
 use tempfile::TempDir;
 
 /// A fake solver.
@@ -55,7 +55,7 @@ fn the_whole_group_is_killed_at_the_deadline() {
     let mut session = session(&fake(&directory, &body), &Options::default());
     let start = Instant::now();
     let answer = session.check(&small().0, &[], &Deadline::after(Duration::from_millis(700)));
-    assert_eq!(answer.expect("no error"), Answer::Unknown("timeout".to_owned()));
+    assert_eq!(answer.expect("no error"), Answer::Unknown(Unknown::Timeout));
     assert!(start.elapsed() < Duration::from_secs(10));
     let pids = fs::read_to_string(pids).expect("the fake wrote it");
     assert_eq!(pids.split_whitespace().count(), 2);
@@ -80,7 +80,7 @@ fn cancelling_ends_the_wait() {
         flag.store(true, std::sync::atomic::Ordering::Relaxed);
     });
     let answer = session.check(&small().0, &[], &deadline).expect("no error");
-    assert_eq!(answer, Answer::Unknown("interrupted".to_owned()));
+    assert_eq!(answer, Answer::Unknown(Unknown::Interrupted));
     canceller.join().expect("it only sleeps");
 }
 

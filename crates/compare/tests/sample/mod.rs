@@ -1,6 +1,7 @@
 //! Hand-made records.
 
 use hyperplan_compare::{Answer, Limit, Record, Status};
+use hyperplan_problem::answer::ReasonCode;
 
 /// A run that ended with a status after some seconds, under a limit of 10.
 pub(crate) fn run(solver: &str, instance: &str, status: Status, wall_s: f64) -> Record {
@@ -44,6 +45,7 @@ pub(crate) fn run(solver: &str, instance: &str, status: Status, wall_s: f64) -> 
         quantifiers_used: None,
         solver_s: Some(wall_s / 2.0),
         rounds: Some(1),
+        reason_code: None,
     }
 }
 
@@ -75,6 +77,7 @@ pub(crate) fn sample() -> Vec<Record> {
             ("specs/model.hp#m", Error) => {
                 record.message =
                     Some("solver cvc5 gave a wrong model: it does not satisfy the query".to_owned());
+                record.reason_code = Some(ReasonCode::WrongModel);
                 record.queries = Some("queries/model/cvc5".to_owned());
             }
             ("specs/known.hp#k", status) => {

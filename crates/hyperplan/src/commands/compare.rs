@@ -1,18 +1,18 @@
 //! `hyperplan compare`: solvers and encodings over problems.
 
 use crate::args;
+use crate::config;
 use crate::configuration;
 use crate::failure::{Failure, Outcome, Status};
 use crate::instances::instances;
 use crate::output::Output;
 use crate::progress::Progress;
 use crate::signals;
-use clap::ValueEnum;
 use hyperplan_compare::benchexec::{Configuration, Problem};
 use hyperplan_compare::plan::{Candidate, Instance, Kind, Run, Ways, count, plan, sha256};
 use hyperplan_compare::report::write_all;
 use hyperplan_compare::{
-    Event, Limit, Log, LogError, Past, Record, Setting, judge, prepare, run_all, summary,
+    Event, Fault, Limit, Log, LogError, Past, Record, Setting, judge, prepare, run_all, summary,
 };
 use hyperplan_solver::{Error, Options, open};
 use std::collections::{BTreeMap, BTreeSet};
@@ -187,7 +187,11 @@ fn report(records: &[Record], folder: &Path, out: &mut Output) -> Outcome {
         Failure::input(format_args!("cannot write the reports in {}: {error}", folder.display()))
     })?;
     out.remark(format_args!("note: the whole report is {}", folder.join("report.html").display()));
-    Ok(Status::from_code(judge(records).exit_code()))
+    Ok(match judge(records).fault() {
+        None => Status::Good,
+        Some(Fault::Solver | Fault::Status) => Status::Solver,
+        Some(Fault::Ours) => Status::Bug,
+    })
 }
 
 /// Writes the same comparison for BenchExec, and runs nothing.
@@ -269,18 +273,14 @@ fn ways(args: &args::Compare) -> Outcome<Ways> {
         return Err(Failure::input("--memory 0 leaves no memory to the solver"));
     }
     Ok(Ways {
-        quantifiers: names(&args.quantifiers),
-        states: names(&args.states),
+        quantifiers: unique(args.quantifiers.iter().map(ToString::to_string)),
+        states: unique(args.states.iter().map(|&states| config::states_name(states))),
         seeds: unique(args.seed.iter().copied()),
         repetitions: args.repeat,
         limit: Limit { wall_s: Some(args.timeout), cpu_s: args.cpu, memory_mib: args.memory },
         options: args.no_verify.then(|| "--no-verify".to_owned()).into_iter().collect(),
         build: String::new(),
     })
-}
-
-fn names(values: &[impl ValueEnum]) -> Vec<String> {
-    unique(values.iter().filter_map(|value| Some(value.to_possible_value()?.get_name().to_owned())))
 }
 
 fn unique<T: Clone + Ord>(values: impl Iterator<Item = T>) -> Vec<T> {

@@ -3,6 +3,7 @@
 use super::emit_family;
 use crate::args;
 use crate::config;
+use crate::explain::Explain;
 use crate::failure::{Failure, Outcome, Status};
 use crate::load::{Consts, Loaded, read_source};
 use crate::output::{Output, cannot_write, check_writable};
@@ -40,13 +41,16 @@ pub(crate) fn run(args: &args::Emit, out: &mut Output) -> Outcome {
                     Ok(emitted) => emitted,
                     Err(error) => {
                         // The other files may do better.
-                        out.error(format_args!("error: {}: {error}", objective.name));
-                        worst = worst.max(Status::from_code(error.exit_code()));
+                        let failure = Explain::default().failure(&objective.name, &error);
+                        out.error(format_args!("error: {}", failure.message));
+                        worst = worst.max(failure.status);
                         continue;
                     }
                 };
                 let whose = if several { format!("{}: ", objective.name) } else { String::new() };
-                emitted.notes.iter().for_each(|note| out.remark(format_args!("note: {whose}{note}")));
+                for note in &emitted.notes {
+                    out.remark(format_args!("note: {whose}{}", Explain::default().note(note)));
+                }
                 let name = Name { objective: &objective.name, setting: setting.as_ref(), args };
                 target.write(&name.of(&config), &mut emitted, out)?;
             }
@@ -74,9 +78,9 @@ pub(super) fn common(args: &args::Emit, date: &str) -> Outcome<EmitConfig> {
 
 /// The ways of writing that were asked for.
 fn encodings(args: &args::Emit) -> impl Iterator<Item = (Quantifiers, Option<States>)> {
-    args.quantifiers.iter().flat_map(|&quantifiers| {
-        args.states.iter().map(move |&states| (config::quantifiers(quantifiers), config::states(states)))
-    })
+    args.quantifiers
+        .iter()
+        .flat_map(|&quantifiers| args.states.iter().map(move |&states| (quantifiers, states)))
 }
 
 /// What the header says of the problem file.

@@ -3,14 +3,14 @@
 mod case;
 
 use super::emit;
-use crate::args::{self, Quantifiers, States};
+use crate::args;
 use crate::config;
 use crate::failure::{Failure, Outcome, Status};
 use crate::output::Output;
 use crate::store::Store;
 use case::One;
 use hyperplan_family::{Case, Family, Head, Layout, Record};
-use hyperplan_plan::{self as plan, EmitConfig, Limits, Track};
+use hyperplan_plan::{EmitConfig, Limits, Quantifiers, States, Track};
 use hyperplan_solver::Deadline;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::Path;
@@ -58,8 +58,8 @@ struct Work<'a> {
     family: Family,
     layout: Layout,
     date: String,
-    states: Vec<Option<plan::States>>,
-    quantifiers: Vec<plan::Quantifiers>,
+    states: Vec<Option<States>>,
+    quantifiers: Vec<Quantifiers>,
     /// How benchmarks are emitted, but for that.
     common: EmitConfig,
     limit: Duration,
@@ -85,15 +85,15 @@ impl<'a> Work<'a> {
         })?;
         // Without a choice there are benchmarks of several logics.
         let states = match args.states.as_slice() {
-            [States::Auto] => vec![Some(plan::States::Onehot), Some(plan::States::Bitvec)],
-            chosen => once(chosen).into_iter().map(config::states).collect(),
+            [None] => vec![Some(States::Onehot), Some(States::Bitvec)],
+            chosen => once(chosen),
         };
         let quantifiers = match args.quantifiers.as_slice() {
-            [Quantifiers::Auto] if args.track == args::Track::Incremental => vec![plan::Quantifiers::Cegis],
-            [Quantifiers::Auto] => vec![plan::Quantifiers::Expand, plan::Quantifiers::Keep],
-            chosen => once(chosen).into_iter().map(config::quantifiers).collect(),
+            [Quantifiers::Auto] if args.track == args::Track::Incremental => vec![Quantifiers::Cegis],
+            [Quantifiers::Auto] => vec![Quantifiers::Expand, Quantifiers::Keep],
+            chosen => once(chosen),
         };
-        if args.track != args::Track::Incremental && quantifiers.contains(&plan::Quantifiers::Cegis) {
+        if args.track != args::Track::Incremental && quantifiers.contains(&Quantifiers::Cegis) {
             let what = "--quantifiers cegis makes incremental benchmarks: add --track incremental";
             return Err(Failure::input(what));
         }
@@ -139,9 +139,7 @@ impl<'a> Work<'a> {
                         let _ = notes.send(Note::Ended(ended));
                     }
                 };
-                // As in the main thread: problems nest.
                 std::thread::Builder::new()
-                    .stack_size(crate::STACK)
                     .spawn_scoped(scope, worker)
                     .map_err(|e| Failure::input(format_args!("cannot start a thread: {e}")))?;
             }

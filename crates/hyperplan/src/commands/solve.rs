@@ -2,6 +2,7 @@
 
 use crate::args::{self, Format};
 use crate::config;
+use crate::explain::{Explain, Why};
 use crate::failure::{Failure, Outcome, Status};
 use crate::family::{Family, Searched};
 use crate::load::Loaded;
@@ -9,7 +10,7 @@ use crate::output::{Output, write_file};
 use crate::report::{json, write_picture};
 use hyperplan_plan::{self as plan, MinimizeError};
 use hyperplan_problem::answer::{
-    Answer, Below, Ordered, Seconds, Size, Solver, Verdict, Verified, to_witness,
+    Answer, Below, Failed, Ordered, ReasonCode, Seconds, Size, Solver, Verdict, Verified, to_witness,
 };
 use hyperplan_problem::{Objective, Quantifier, Strategy, Trace};
 use hyperplan_render::{Board, Scene, TextStyle, actions_line, table, text_map};
@@ -30,6 +31,7 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
             (Some(family), loaded)
         }
     };
+    let explain = Explain { queries: config.plan.queries.as_deref() };
     let objectives = loaded.selected(args.selection.objective.as_deref(), false)?;
     let several = objectives.len() > 1;
     let mut worst = Status::Good;
@@ -39,20 +41,27 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
             break;
         }
         let start = Instant::now();
-        let (outcome, searched) = match solve(&loaded, objective, family.as_ref(), &config.plan) {
+        let (outcome, searched) = match solve(&loaded, objective, family.as_ref(), &config.plan, explain) {
             Ok(found) => found,
-            Err(failure) => {
+            Err((failure, reason_code)) => {
                 // The other objectives may do better.
                 out.error(format_args!("error: {}", failure.message));
                 worst = worst.max(failure.status);
+                if args.failures {
+                    let objective = objective.name.clone();
+                    out.line(json(&Failed { objective, reason: failure.message, reason_code })?)?;
+                }
                 continue;
             }
         };
         let total = loaded.time + start.elapsed();
         let loaded = searched.as_ref().map_or(&loaded, |searched| &searched.loaded);
         let objective = loaded.problem.objective(&objective.name).unwrap_or(objective);
-        let answer = answer(loaded, objective, &outcome, searched.as_ref(), total);
         let searched = searched.as_ref();
+        let own = outcome.reason.as_ref().filter(|_| searched.is_none());
+        let own = own.map(|reason| Why::new(reason, explain));
+        let why = own.as_ref().or_else(|| searched?.undecided.as_ref());
+        let answer = answer(loaded, objective, &outcome, searched, why, total);
         let found = Found { loaded, objective, outcome: &outcome, answer: &answer, searched };
         match args.output.format {
             Format::Json => out.line(json(&answer)?)?,
@@ -63,7 +72,7 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
                 out.line(text.trim_end())?;
             }
         }
-        outcome.notes.iter().for_each(|note| out.remark(format_args!("note: {note}")));
+        outcome.notes.iter().for_each(|note| out.remark(format_args!("note: {}", explain.note(note))));
         if let (Some(picture), Some(_)) = (&config.plot, &outcome.witness) {
             let named = several.then(|| picture.for_objective(&objective.name));
             write_picture(found.scene(), named.as_ref().unwrap_or(picture))?;
@@ -84,19 +93,19 @@ fn solve(
     objective: &Objective,
     family: Option<&Family<'_>>,
     config: &plan::Config,
-) -> Outcome<(plan::Outcome, Option<Searched>)> {
+    explain: Explain<'_>,
+) -> Result<(plan::Outcome, Option<Searched>), (Failure, ReasonCode)> {
     let name = &objective.name;
-    let failed = |error: &plan::Error, value: String| Failure {
-        status: Status::from_code(error.exit_code()),
-        message: format!("{name}{value}: {error}"),
+    let failed = |error: &plan::Error, value: String| {
+        (explain.failure(format_args!("{name}{value}"), error), error.code())
     };
     let Some(family) = family else {
         let outcome = plan::solve(&loaded.problem, objective, config);
         return outcome.map(|outcome| (outcome, None)).map_err(|error| failed(&error, String::new()));
     };
-    match family.least(loaded, objective, config) {
+    match family.least(loaded, objective, config, explain) {
         Ok((outcome, searched)) => Ok((outcome, Some(searched))),
-        Err(MinimizeError::Problem(failure)) => Err(failure),
+        Err(MinimizeError::Problem(failure)) => Err((failure, ReasonCode::Unsupported)),
         Err(MinimizeError::Solve { value, error }) => {
             Err(failed(&error, format!(" with {} = {value}", family.constant)))
         }
@@ -118,33 +127,28 @@ fn answer(
     objective: &Objective,
     outcome: &plan::Outcome,
     searched: Option<&Searched>,
+    why: Option<&Why>,
     total: Duration,
 ) -> Answer {
     let names = objective.paths.iter().map(|p| p.name.clone());
     Answer {
         file: loaded.file.clone(),
         objective: objective.name.clone(),
-        verdict: match outcome.verdict {
-            plan::Verdict::Realizable => Verdict::Realizable,
-            plan::Verdict::Unrealizable => Verdict::Unrealizable,
-            plan::Verdict::Unknown => Verdict::Unknown,
-        },
-        reason: outcome.reason.clone().or_else(|| searched?.undecided.clone()),
+        verdict: outcome.verdict,
+        reason: why.map(|why| why.words.clone()),
+        reason_code: why.map(|why| why.code),
         horizon: Ordered(names.zip(outcome.horizons.iter().copied()).collect()),
         witness: outcome.witness.as_ref().map(|s| to_witness(&loaded.problem, objective, s)),
-        verified: outcome.verified.as_ref().map(|verified| match verified {
-            plan::Verified::BySearch => Verified::BySearch,
-            plan::Verified::BySolver => Verified::BySolver,
-        }),
+        verified: outcome.verified,
         solver: Solver { name: outcome.solver.name.clone(), version: outcome.solver.version.clone() },
-        quantifiers: outcome.quantifiers.to_string(),
-        states: outcome.states.to_string(),
-        logic: outcome.told.logic.clone(),
+        quantifiers: outcome.quantifiers,
+        states: outcome.states,
+        logic: outcome.size.logic.clone(),
         iterations: outcome.iterations,
         size: Size {
-            variables: outcome.told.variables,
-            clauses: outcome.told.clauses,
-            bytes: Some(outcome.told.bytes).filter(|bytes| *bytes > 0),
+            variables: outcome.size.variables,
+            clauses: outcome.size.clauses,
+            bytes: Some(outcome.size.bytes).filter(|bytes| *bytes > 0),
         },
         seconds: Seconds {
             read: rounded(loaded.time.as_secs_f64()),

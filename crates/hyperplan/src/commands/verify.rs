@@ -1,6 +1,7 @@
 //! `hyperplan verify`: whether a strategy does what its objective asks, decided without any solver.
 
 use crate::args;
+use crate::explain::Explain;
 use crate::failure::{Failure, Outcome, Status};
 use crate::load::{Given, Loaded, read_source};
 use crate::output::{Output, cannot_write};
@@ -67,7 +68,8 @@ fn of_model<'l>(
     let objectives = loaded.selected(name, false)?;
     let strategy = |objective: &'l Objective| {
         let strategy = strategy_of_model(&loaded.problem, objective, &model, &Deadline::never());
-        let strategy = strategy.map_err(|e| Failure::input(format_args!("{shown}: {e}")))?;
+        let strategy = strategy
+            .map_err(|error| Failure::input(format_args!("{shown}: {}", Explain::default().error(&error))))?;
         Ok((objective, strategy))
     };
     objectives.into_iter().map(strategy).collect()

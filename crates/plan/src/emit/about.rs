@@ -2,6 +2,7 @@
 
 use super::EmitConfig;
 use crate::config::Quantifiers;
+use crate::fact::Note;
 use hyperplan_encode::{Encoder, States};
 use hyperplan_problem::{Map, Mode, Objective, System, display};
 use hyperplan_smt::Features;
@@ -15,7 +16,7 @@ pub(super) fn source(
     encoder: &Encoder<'_>,
     config: &EmitConfig,
     quantifiers: &str,
-    changes: &[String],
+    changes: &[Note],
 ) -> String {
     let objective = encoder.objective;
     let version = env!("CARGO_PKG_VERSION");

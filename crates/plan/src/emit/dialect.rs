@@ -1,8 +1,10 @@
 //! What a benchmark looks like for one solver, or for all.
 
-use crate::config::{Error, Quantifiers};
+use crate::config::Quantifiers;
+use crate::fact::{Error, Note};
 use hyperplan_smt::{Features, logic};
 use hyperplan_solver::{Facts, Spec};
+use std::sync::Arc;
 
 /// What the solver takes that the benchmark is for.
 pub(super) struct Dialect(Option<Facts>);
@@ -15,9 +17,9 @@ impl Dialect {
     }
 
     /// Quantifiers are kept where the solver takes them.
-    pub(super) fn quantifiers(&self, blocks: usize, notes: &mut Vec<String>) -> Quantifiers {
+    pub(super) fn quantifiers(&self, blocks: usize, notes: &mut Vec<Note>) -> Quantifiers {
         let Err(error) = self.demand_quantifiers(blocks) else { return Quantifiers::Keep };
-        notes.push(format!("quantifiers are expanded: {error}"));
+        notes.push(Note::Expanded(Arc::new(error)));
         Quantifiers::Expand
     }
 
@@ -30,15 +32,12 @@ impl Dialect {
     }
 
     /// The logic: the one that the terms need and no more, unless another serves the solver better.
-    pub(super) fn logic(&self, features: &Features, notes: &mut Vec<String>) -> Result<String, Error> {
+    pub(super) fn logic(&self, features: &Features, notes: &mut Vec<Note>) -> Result<String, Error> {
         let smallest = logic(features);
         let Some(facts) = &self.0 else { return Ok(smallest.to_owned()) };
         let logic = facts.logic(features)?;
         if logic != smallest {
-            notes.push(format!(
-                "the logic is {logic} instead of {smallest}, which serves {} better",
-                facts.name()
-            ));
+            notes.push(Note::Logic { logic: logic.clone(), smallest, solver: facts.name().to_owned() });
         }
         Ok(logic)
     }

@@ -6,10 +6,11 @@ mod model;
 mod tape;
 
 use crate::cegis::Cegis;
-use crate::config::{Config, Error, Quantifiers, Verdict};
+use crate::config::{Config, Quantifiers, Verdict};
 use crate::direct;
-use crate::oracle::{Oracle, Stop};
-use crate::prepare::decided;
+use crate::fact::{Error, Note, Unsupported};
+use crate::oracle::{Oracle, Stop, solver_for};
+use crate::prepare::{decided, is_existential, is_finite};
 use crate::solve::solve;
 use dialect::Dialect;
 use hyperplan_encode::{Encoder, Goal, Limits, Narrowing, States};
@@ -17,7 +18,7 @@ use hyperplan_problem::{Mode, Objective, PathId, Problem, Quantifier};
 use hyperplan_smt::{Ask, Features, Header, Script, WriteOptions, write_header, write_script};
 use hyperplan_solver::{Deadline, Spec};
 use std::io;
-pub(crate) use tape::Tape;
+use tape::Tape;
 
 pub use hyperplan_smt::Status;
 pub use model::strategy_of_model;
@@ -100,7 +101,7 @@ pub struct Emitted {
     /// Assertions.
     pub assertions: usize,
     /// What the user should know.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 enum Body {
@@ -148,9 +149,7 @@ pub fn emit(problem: &Problem, objective: &Objective, config: &EmitConfig) -> Re
     let emitted =
         settled(problem, objective, config.states, limits, &stop, |encoder| build(encoder, config, &dialect));
     emitted.map_err(|error| match error {
-        Error::Encode(hyperplan_encode::Error::Interrupted) => {
-            Error::Late(config.deadline.reason().to_owned())
-        }
+        Error::Encode(hyperplan_encode::Error::Interrupted) => Error::Late(config.deadline.reason()),
         error => error,
     })
 }
@@ -182,11 +181,7 @@ fn empty(encoder: &Encoder<'_>) -> Result<Option<Quantifier>, Error> {
             Some(true) => {}
             Some(false) => return Ok(Some(objective.paths[path].quantifier)),
             None if objective.mode == Mode::Bounded && encoder.task.system(path).is_finite() => {
-                return Err(Error::Unsupported(format!(
-                    "system {} is too large to enumerate, so it is not known which of its paths go on for ever; \
-                     use `within K`",
-                    encoder.task.system(path).name
-                )));
+                return Err(Unsupported::Endless { system: encoder.task.system(path).name.clone() }.into());
             }
             None => {}
         }
@@ -198,7 +193,7 @@ fn build(encoder: &Encoder<'_>, config: &EmitConfig, dialect: &Dialect) -> Resul
     let mut notes = Vec::new();
     let objective = encoder.objective;
     let blocks = objective.blocks();
-    let exists = objective.paths.first().is_none_or(|p| p.quantifier == Quantifier::Exists);
+    let exists = is_existential(objective);
     let mut changes = Vec::new();
     let quantifiers = quantifiers(config, blocks.len(), dialect, &mut changes)?;
     let (body, found) = match quantifiers {
@@ -219,10 +214,7 @@ fn build(encoder: &Encoder<'_>, config: &EmitConfig, dialect: &Dialect) -> Resul
         (None, None) => expected(encoder, config, exists, &mut notes)?,
     };
     if !exists {
-        notes.push(format!(
-            "{} begins with forall: the query is satisfiable if it has a counterexample",
-            objective.name
-        ));
+        notes.push(Note::Counterexample { objective: objective.name.clone() });
     }
     let ask = asked(config.track, status)?;
     let (features, symbols, assertions) = match &body {
@@ -268,20 +260,13 @@ fn quantifiers(
     config: &EmitConfig,
     blocks: usize,
     dialect: &Dialect,
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Note>,
 ) -> Result<Quantifiers, Error> {
     match (config.track, config.quantifiers) {
-        (Track::Incremental, Quantifiers::Auto | Quantifiers::Cegis) | (Track::Single, Quantifiers::Cegis) => {
-            Ok(Quantifiers::Cegis)
-        }
-        (Track::Incremental, one) => Err(Error::Unsupported(format!(
-            "--quantifiers {one} gives a single query, which is no incremental benchmark; use --quantifiers cegis"
-        ))),
-        (Track::Model | Track::UnsatCore, Quantifiers::Cegis) => Err(Error::Unsupported(
-            "the search by counterexamples is a dialogue, which asks for no model and no core; use --quantifiers keep \
-             or expand, or --track incremental"
-                .into(),
-        )),
+        (Track::Incremental, Quantifiers::Auto | Quantifiers::Cegis)
+        | (Track::Single, Quantifiers::Cegis) => Ok(Quantifiers::Cegis),
+        (Track::Incremental, one) => Err(Unsupported::SingleQuery(one).into()),
+        (Track::Model | Track::UnsatCore, Quantifiers::Cegis) => Err(Unsupported::Dialogue.into()),
         (_, Quantifiers::Expand) => Ok(Quantifiers::Expand),
         (_, Quantifiers::Keep) if blocks == 1 => Ok(Quantifiers::Keep),
         (_, Quantifiers::Keep) => dialect.demand_quantifiers(blocks).map(|()| Quantifiers::Keep),
@@ -290,16 +275,12 @@ fn quantifiers(
 }
 
 /// What the track asks for besides the answer.
-fn asked(track: Track, status: Status) -> Result<Ask, Error> {
+fn asked(track: Track, status: Status) -> Result<Ask, Unsupported> {
     match (track, status) {
         (Track::Single | Track::Incremental, _) => Ok(Ask::Answer),
-        (Track::Model, Status::Unsat) => {
-            Err(Error::Unsupported("the query is unsatisfiable: there is no model to ask for".into()))
-        }
+        (Track::Model, Status::Unsat) => Err(Unsupported::NoModel),
         (Track::Model, _) => Ok(Ask::Model),
-        (Track::UnsatCore, Status::Sat) => Err(Error::Unsupported(
-            "the query is satisfiable: there is no unsatisfiable core to ask for".into(),
-        )),
+        (Track::UnsatCore, Status::Sat) => Err(Unsupported::NoCore),
         (Track::UnsatCore, _) => Ok(Ask::Core),
     }
 }
@@ -309,12 +290,10 @@ fn expected(
     encoder: &Encoder<'_>,
     config: &EmitConfig,
     exists: bool,
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Note>,
 ) -> Result<Status, Error> {
-    let finite = encoder.objective.paths.iter().all(|path| encoder.problem.systems[path.system].is_finite());
-    let solver = if finite { Some(Spec::Builtin) } else { Spec::for_arithmetic() };
-    let Some(solver) = solver else {
-        notes.push("the status is not known: no solver for integers and reals was found".into());
+    let Some(solver) = solver_for(!is_finite(encoder.problem, encoder.objective)) else {
+        notes.push(Note::NoArithmeticSolver);
         return Ok(Status::Unknown);
     };
     let own = Config { deadline: config.deadline.clone(), ..Config::new(solver) };
@@ -323,8 +302,7 @@ fn expected(
         (Verdict::Realizable, true) | (Verdict::Unrealizable, false) => Status::Sat,
         (Verdict::Realizable, false) | (Verdict::Unrealizable, true) => Status::Unsat,
         (Verdict::Unknown, _) => {
-            let reason = outcome.reason.unwrap_or_else(|| "the search gave up".into());
-            notes.push(format!("the status is not known: {reason}"));
+            notes.extend(outcome.reason.map(Note::StatusUnknown));
             Status::Unknown
         }
     })
@@ -336,16 +314,12 @@ fn dialogue(
     config: &EmitConfig,
     blocks: &[Vec<PathId>],
     exists: bool,
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Note>,
 ) -> Result<(Tape, Option<Status>), Error> {
-    let solver = if encoder.states.is_arithmetic() { Spec::for_arithmetic() } else { Some(Spec::Builtin) };
-    let solver = solver.ok_or_else(|| {
-        let what = "a search with integers or reals takes z3, cvc5 or yices, and none was found";
-        Error::Unsupported(what.into())
-    })?;
+    let solver = solver_for(encoder.states.is_arithmetic()).ok_or(Unsupported::NoArithmeticSolver)?;
     let own = Config { deadline: config.deadline.clone(), ..Config::new(solver) };
-    let mut oracle = Oracle::new(&own);
-    oracle.tape = Some(Tape::new(config.comments));
+    let mut tape = Tape::new(config.comments);
+    let mut oracle = Oracle::new(&own).heard_by(&mut tape);
     let goal = Goal::new(&encoder.objective.formula, exists);
     let nothing = vec![None; encoder.objective.paths.len()];
     let found = Cegis::new(encoder, &mut oracle, blocks).find(0, &nothing, &goal, 1);
@@ -353,19 +327,15 @@ fn dialogue(
         Ok(found) => Some(if found.is_empty() { Status::Unsat } else { Status::Sat }),
         Err(Stop::Error(error)) => return Err(error),
         Err(Stop::Unknown(reason)) => {
-            notes.push(format!("the dialogue ends before the answer is known: {reason}"));
+            notes.push(Note::DialogueCut(reason));
             Some(Status::Unknown)
         }
     };
-    let tape = oracle.tape.take().unwrap_or_else(|| Tape::new(config.comments));
     if tape.checks < 2 {
-        let what = match status {
-            Some(Status::Unknown) => "the search did not get to ask twice: give it more time",
-            _ => {
-                "the search asks only once, which makes no incremental benchmark; use --quantifiers keep or expand"
-            }
-        };
-        return Err(Error::Unsupported(what.into()));
+        return Err(match status {
+            Some(Status::Unknown) => Unsupported::ShortDialogue.into(),
+            _ => Unsupported::OneCheck.into(),
+        });
     }
     Ok((tape.finished()?, status))
 }

@@ -1,10 +1,11 @@
 //! From a model of an emitted query back to paths.
 
 use super::settled;
-use crate::config::Error;
 use crate::direct;
+use crate::fact::{Error, Unsupported};
+use crate::prepare::is_existential;
 use hyperplan_encode::{Encoder, Goal, Limits, Narrowing, States};
-use hyperplan_problem::{Objective, PathId, Problem, Quantifier, Strategy};
+use hyperplan_problem::{Objective, PathId, Problem, Strategy};
 use hyperplan_smt::{Model, Term};
 use hyperplan_solver::{Deadline, PrintedModel};
 use std::cmp::Reverse;
@@ -36,13 +37,8 @@ pub fn strategy_of_model(
     let best = readings.into_iter().min_by_key(|reading| (Reverse(reading.present), reading.absent));
     match best {
         Some(reading) if reading.present > 0 || reading.absent == 0 => reading.strategy,
-        _ if deadline.passed() => Err(Error::Unsupported("out of time".into())),
-        _ => {
-            let name = &objective.name;
-            Err(Error::Unsupported(format!(
-                "it is no model of objective {name} as emit writes it: no symbol fits"
-            )))
-        }
+        _ if deadline.passed() => Err(Unsupported::OutOfTime.into()),
+        _ => Err(Unsupported::ForeignModel(objective.name.clone()).into()),
     }
 }
 
@@ -57,8 +53,7 @@ struct Reading {
 fn read(encoder: &Encoder<'_>, printed: &PrintedModel) -> Result<Reading, Error> {
     let objective = encoder.objective;
     let blocks = objective.blocks();
-    let exists = objective.paths.first().is_none_or(|p| p.quantifier == Quantifier::Exists);
-    let goal = Goal::new(&objective.formula, exists);
+    let goal = Goal::new(&objective.formula, is_existential(objective));
     let direct = direct::leading(encoder, &blocks, &goal, Narrowing::default())?;
     let terms = &direct.query.script.terms;
     let symbols = direct.query.script.symbols();
@@ -77,7 +72,7 @@ fn strategy(
     let terms = &direct.query.script.terms;
     let mut model = Model::new();
     for &symbol in symbols {
-        let value = printed.value(terms, symbol).map_err(|e| Error::Unsupported(e.to_string()))?;
+        let value = printed.value(terms, symbol).map_err(Unsupported::Value)?;
         // A symbol that does not matter may be left out; any value will do.
         model.insert(symbol, value.unwrap_or_else(|| hyperplan_smt::Value::default_of(terms.sort(symbol))));
     }
@@ -86,8 +81,5 @@ fn strategy(
         Some(direct.query.paths.decode(declared, &model)?.trace(path))
     };
     let traces: Option<Vec<_>> = block.iter().map(trace).collect();
-    let wrong = || {
-        Error::Unsupported("it describes no paths of the objective's systems; is it of another objective, or with another --set?".into())
-    };
-    Ok(Strategy { traces: traces.ok_or_else(wrong)? })
+    Ok(Strategy { traces: traces.ok_or(Unsupported::NoPaths)? })
 }

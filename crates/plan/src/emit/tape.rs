@@ -4,7 +4,8 @@
 //! above it, between `push` and `pop`: its symbols are others, and what lies below is satisfiable, so the answers are
 //! those that it was given. Every check has its answer for `:status`.
 
-use crate::config::Error;
+use crate::fact::Error;
+use crate::oracle::Listener;
 use hyperplan_smt::{Features, Printer, Script, Status, write_comment};
 use std::io::{self, Seek as _, Write};
 use tempfile::SpooledTempFile;
@@ -13,7 +14,7 @@ use tempfile::SpooledTempFile;
 const IN_MEMORY: usize = 1 << 24;
 
 /// The text so far, and what each open dialogue has said.
-pub(crate) struct Tape {
+pub(super) struct Tape {
     text: SpooledTempFile,
     open: Vec<Scope>,
     /// How many dialogues there were.
@@ -49,31 +50,6 @@ impl Tape {
 
     pub(super) fn features(&self) -> Features {
         self.features
-    }
-
-    /// A dialogue begins.
-    pub(crate) fn open(&mut self) {
-        if !self.open.is_empty() {
-            self.keep(|tape| tape.text.write_all(b"(push 1)\n"));
-        }
-        let printer = Printer::numbered(self.dialogues, self.open.last().map(|scope| &scope.printer));
-        self.dialogues += 1;
-        self.open.push(Scope { printer, fed: 0 });
-    }
-
-    /// The innermost dialogue ends.
-    pub(crate) fn close(&mut self) {
-        self.open.pop();
-        if !self.open.is_empty() {
-            self.keep(|tape| tape.text.write_all(b"(pop 1)\n"));
-        }
-    }
-
-    /// The innermost dialogue says what is new in its script, and gets an answer.
-    pub(crate) fn check(&mut self, script: &Script, satisfiable: bool) {
-        let Some(mut scope) = self.open.pop() else { return };
-        self.keep(|tape| tape.say(&mut scope, script, satisfiable));
-        self.open.push(scope);
     }
 
     fn say(&mut self, scope: &mut Scope, script: &Script, satisfiable: bool) -> io::Result<()> {
@@ -122,11 +98,35 @@ impl Tape {
     /// The tape, unless something could not be kept.
     pub(super) fn finished(mut self) -> Result<Self, Error> {
         while self.open.len() > 1 {
-            self.close();
+            self.closed();
         }
         match self.failure.take() {
             None => Ok(self),
-            Some(error) => Err(Error::Io(format!("cannot keep the dialogue in a temporary file: {error}"))),
+            Some(error) => Err(Error::Tape(error)),
         }
+    }
+}
+
+impl Listener for Tape {
+    fn opened(&mut self) {
+        if !self.open.is_empty() {
+            self.keep(|tape| tape.text.write_all(b"(push 1)\n"));
+        }
+        let printer = Printer::numbered(self.dialogues, self.open.last().map(|scope| &scope.printer));
+        self.dialogues += 1;
+        self.open.push(Scope { printer, fed: 0 });
+    }
+
+    fn closed(&mut self) {
+        self.open.pop();
+        if !self.open.is_empty() {
+            self.keep(|tape| tape.text.write_all(b"(pop 1)\n"));
+        }
+    }
+
+    fn checked(&mut self, script: &Script, satisfiable: bool) {
+        let Some(mut scope) = self.open.pop() else { return };
+        self.keep(|tape| tape.say(&mut scope, script, satisfiable));
+        self.open.push(scope);
     }
 }

@@ -46,7 +46,17 @@ pub struct Lints {
     /// Questions that were not decided, each with its place and the reason.
     pub undecided: Vec<Diagnostic>,
     /// What was not looked at.
-    pub notes: Vec<String>,
+    pub notes: Vec<Uninspected>,
+}
+
+/// A system that was not looked at.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the states of system {system} were not inspected: {}", if *.late { "there was no time for it" } else { "it has too many states, or infinitely many" })]
+pub struct Uninspected {
+    /// The system.
+    pub system: String,
+    /// For want of time; else it is too large.
+    pub late: bool,
 }
 
 /// What is suspicious about an objective. The deadline bounds all of it.

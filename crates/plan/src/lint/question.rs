@@ -1,12 +1,13 @@
 //! Questions: whether some paths, all chosen freely, satisfy a formula.
 
 use crate::cegis::{Assignment, Cegis};
-use crate::config::{Config, Error};
-use crate::oracle::{Oracle, Stop};
-use crate::prepare::{no_dead_ends, without_paths};
+use crate::config::Config;
+use crate::fact::{Error, Reason};
+use crate::oracle::{Oracle, Stop, solver_for};
+use crate::prepare::{is_finite, no_dead_ends, without_paths};
 use hyperplan_encode::{self as encode, Encoder, Goal, Limits};
 use hyperplan_problem::{Formula, Mode, Objective, PathId, PathVar, Problem, Quantifier};
-use hyperplan_solver::{Deadline, Spec};
+use hyperplan_solver::{Deadline, Spec, Unknown};
 use hyperplan_syntax::{Diagnostic, Span};
 use std::time::Duration;
 
@@ -36,9 +37,7 @@ impl<'a> Asker<'a> {
         deadline: Deadline,
         each: Duration,
     ) -> Self {
-        let finite = objective.paths.iter().all(|path| problem.systems[path.system].is_finite());
-        let solver = if finite { None } else { Spec::for_arithmetic() };
-        let solver = solver.unwrap_or(Spec::Builtin);
+        let solver = solver_for(!is_finite(problem, objective)).unwrap_or(Spec::Builtin);
         Asker { problem, objective, deadline, each, solver, undecided: Vec::new() }
     }
 
@@ -89,7 +88,7 @@ impl<'a> Asker<'a> {
     pub(super) fn is_over(&mut self, about: Span) -> bool {
         let over = self.deadline.passed();
         if over {
-            self.give_up(Stop::Unknown(String::new()), about, "every part of this matters");
+            self.give_up(Stop::Unknown(Unknown::Timeout.into()), about, "every part of this matters");
         }
         over
     }
@@ -110,8 +109,8 @@ impl<'a> Asker<'a> {
             let why = match stop {
                 _ if self.deadline.passed() => "no time was left".to_owned(),
                 Stop::Error(Error::Encode(encode::Error::Interrupted)) => self.late(),
-                Stop::Unknown(reason) if reason == "timeout" => self.late(),
-                Stop::Unknown(reason) => reason,
+                Stop::Unknown(Reason::Solver(Unknown::Timeout)) => self.late(),
+                Stop::Unknown(reason) => reason.to_string(),
                 Stop::Error(error) => error.to_string(),
             };
             format!("it is undecided whether {what}: {why}")
@@ -141,7 +140,7 @@ fn limits() -> Limits {
 fn search(problem: &Problem, question: &Objective, config: &Config) -> Result<Option<Assignment>, Stop> {
     let stop = || config.deadline.passed();
     if stop() {
-        return Err(Stop::Unknown(config.deadline.reason().to_owned()));
+        return Err(Stop::Unknown(config.deadline.reason().into()));
     }
     let encoder = Encoder::new(problem, question, None, limits(), &stop)?;
     let mut oracle = Oracle::new(config);

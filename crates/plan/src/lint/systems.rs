@@ -1,7 +1,6 @@
 //! What is suspicious about systems, found by looking at every reachable state.
 
-use super::Lints;
-
+use super::{Lints, Uninspected};
 use hyperplan_problem::{Problem, System, display};
 use hyperplan_solver::Deadline;
 use hyperplan_space::{Findings, Graph, StateIx, inspect};
@@ -26,16 +25,16 @@ pub fn lint_systems(problem: &Problem, deadline: &Deadline) -> Lints {
             }
             Ok(graph) => match inspect(system, &graph, &|| deadline.passed()) {
                 Some(findings) => describe(system, &graph, &findings, &mut lints.warnings),
-                None => lints.notes.push(uninspected(system, "there was no time for it")),
+                None => lints.notes.push(uninspected(system, true)),
             },
-            Err(_) => lints.notes.push(uninspected(system, "it has too many states, or infinitely many")),
+            Err(_) => lints.notes.push(uninspected(system, false)),
         }
     }
     lints
 }
 
-fn uninspected(system: &System, why: &str) -> String {
-    format!("the states of system {} were not inspected: {why}", system.name)
+fn uninspected(system: &System, late: bool) -> Uninspected {
+    Uninspected { system: system.name.clone(), late }
 }
 
 fn describe(system: &System, graph: &Graph, findings: &Findings, found: &mut Vec<Diagnostic>) {

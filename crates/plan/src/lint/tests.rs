@@ -74,7 +74,7 @@ fn a_system_too_large_to_enumerate_is_not_passed_over_in_silence() {
     let problem = problem(text);
     let lints = lint_systems(&problem, &Deadline::never());
     assert_eq!(
-        lints.notes,
+        lints.notes.iter().map(ToString::to_string).collect::<Vec<_>>(),
         ["the states of system Large were not inspected: it has too many states, or infinitely many"]
     );
     let lints = lint(&problem, &problem.objectives[0], &Deadline::never(), Budget::default());

@@ -27,7 +27,7 @@ use typed_index_collections::TiVec;
 pub(super) fn lint(asker: &mut Asker<'_>, found: &mut Vec<Diagnostic>) -> bool {
     let formula = &asker.objective.formula;
     let root = formula.root();
-    let mut search = Search {
+    let mut search = Vacuity {
         formula,
         replaced: Replaced::new(),
         polarity: polarities(formula),
@@ -122,7 +122,7 @@ enum Task {
     Try(FormulaId, Role),
 }
 
-struct Search<'f> {
+struct Vacuity<'f> {
     formula: &'f Formula,
     /// What was found not to matter.
     replaced: Replaced,
@@ -134,7 +134,7 @@ struct Search<'f> {
     valid: bool,
 }
 
-impl Search<'_> {
+impl Vacuity<'_> {
     /// Whether some paths give a part this truth value.
     fn part_possible(&self, asker: &mut Asker<'_>, part: FormulaId, value: bool) -> Option<bool> {
         let mut builder = Builder::new(self.formula);

@@ -4,7 +4,7 @@
 use rustsat::types::{Lit, Var};
 
 use super::backend::Backend;
-use crate::session::Told;
+use crate::session::QuerySize;
 
 /// Makes literals and clauses.
 pub(super) struct Gates {
@@ -22,8 +22,8 @@ impl Gates {
     }
 
     /// What the SAT solver was given.
-    pub(super) fn told(&self) -> Told {
-        Told { clauses: self.sat.clauses(), variables: self.next as usize, ..Told::default() }
+    pub(super) fn size(&self) -> QuerySize {
+        QuerySize { clauses: self.sat.clauses(), variables: self.next as usize, ..QuerySize::default() }
     }
 
     pub(super) fn constant(&self, value: bool) -> Lit {

@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 use crate::deadline::Deadline;
-use crate::error::Error;
+use crate::error::{Error, Unknown};
 
 /// How often memory is looked at: the system takes some microseconds to answer.
 const INTERVAL: Duration = Duration::from_millis(10);
@@ -66,10 +66,10 @@ impl Budget {
     }
 
     /// Why it was time to stop.
-    pub(super) fn reason(&self) -> String {
+    pub(super) fn reason(&self) -> Unknown {
         match &self.memory {
-            Some(memory) if !self.deadline.passed() => format!("memory limit of {} MiB reached", memory.mib),
-            _ => self.deadline.reason().to_owned(),
+            Some(memory) if !self.deadline.passed() => Unknown::MemoryLimit { mib: memory.mib },
+            _ => self.deadline.reason(),
         }
     }
 }

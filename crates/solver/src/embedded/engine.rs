@@ -8,7 +8,7 @@ use super::budget::{Budget, Halt, Memory};
 use super::cnf::{Cnf, width};
 use crate::deadline::Deadline;
 use crate::error::Error;
-use crate::session::{Answer, Identity, Options, Quantifiers, Session, Told};
+use crate::session::{Answer, Identity, Options, Quantifiers, QuerySize, Session};
 use crate::transcript::{cannot_keep, numbered};
 
 /// The embedded engine.
@@ -138,7 +138,7 @@ impl Session for Engine {
         Identity { name: "builtin".to_owned(), version: self.version.clone() }
     }
 
-    fn told(&self) -> Told {
-        self.cnf.gates.told()
+    fn size(&self) -> QuerySize {
+        self.cnf.gates.size()
     }
 }

@@ -10,8 +10,8 @@ use super::one_shot::OneShot;
 use super::profile::{Assumptions, Profile};
 use super::program::Program;
 use crate::deadline::Deadline;
-use crate::error::Error;
-use crate::session::{Answer, Identity, Options, Quantifiers, Session, Told};
+use crate::error::{Error, Unknown};
+use crate::session::{Answer, Identity, Options, Quantifiers, QuerySize, Session};
 
 /// How much text is gathered before it is sent.
 const PIECE: usize = 1 << 16;
@@ -34,7 +34,14 @@ fn session(program: Program, options: &Options) -> Box<dyn Session> {
     }
     let options = options.clone();
     let deadline = Deadline::never();
-    Box::new(Dialogue { program, options, running: None, deadline, has_model: false, told: Told::default() })
+    Box::new(Dialogue {
+        program,
+        options,
+        running: None,
+        deadline,
+        has_model: false,
+        size: QuerySize::default(),
+    })
 }
 
 impl Program {
@@ -71,7 +78,7 @@ struct Dialogue {
     running: Option<Running>,
     deadline: Deadline,
     has_model: bool,
-    told: Told,
+    size: QuerySize,
 }
 
 /// What belongs to one process.
@@ -249,11 +256,11 @@ impl Dialogue {
     ) -> Result<Answer, Error> {
         self.feed(&mut running, script, assumptions, deadline)?;
         let (clauses, variables) = (running.fed, running.printer.declared());
-        self.told = Told { clauses, variables, bytes: running.bytes, logic: running.logic.clone() };
+        self.size = QuerySize { clauses, variables, bytes: running.bytes, logic: running.logic.clone() };
         // On an error or at the deadline the process is dropped, which kills it.
         let answer = match running.exchange.answer(deadline)? {
-            None => return Ok(Answer::Unknown(deadline.reason().to_owned())),
-            Some(Answer::Unknown(reason)) if reason == "unknown" => {
+            None => return Ok(Answer::Unknown(deadline.reason())),
+            Some(Answer::Unknown(Unknown::Unsaid)) => {
                 running.exchange.send(REASON.to_vec(), deadline);
                 Answer::Unknown(running.exchange.reason(0, deadline))
             }
@@ -277,7 +284,7 @@ impl Session for Dialogue {
             return Ok(Answer::Unsat);
         }
         if deadline.passed() {
-            return Ok(Answer::Unknown(deadline.reason().to_owned()));
+            return Ok(Answer::Unknown(deadline.reason()));
         }
         let assumptions: Vec<Term> = assumptions.iter().copied().filter(|&t| t != Term::TRUE).collect();
         let old = self.running.take().filter(|old| !self.program.one_shot && old.exchange.is_open());
@@ -312,8 +319,8 @@ impl Session for Dialogue {
         Identity { name: self.program.name.clone(), version: self.program.version.get() }
     }
 
-    fn told(&self) -> Told {
-        self.told.clone()
+    fn size(&self) -> QuerySize {
+        self.size.clone()
     }
 }
 
@@ -341,7 +348,7 @@ pub(super) fn negate(values: &mut [Value], symbols: &[Term]) {
 /// A solver that had not enough memory is undecided, not at fault.
 pub(super) fn out_of_memory(answer: Result<Answer, Error>) -> Result<Answer, Error> {
     match answer {
-        Err(Error::Memory { .. }) => Ok(Answer::Unknown("out of memory".to_owned())),
+        Err(Error::Memory { .. }) => Ok(Answer::Unknown(Unknown::Memory)),
         answer => answer,
     }
 }

@@ -8,7 +8,7 @@ use super::process::{Next, Process};
 use super::program::Program;
 use super::reply::{self, Meaning, Reply};
 use crate::deadline::Deadline;
-use crate::error::Error;
+use crate::error::{Error, Unknown};
 use crate::session::{Answer, Options};
 use crate::transcript::Transcript;
 
@@ -131,8 +131,8 @@ impl Exchange {
                 }
                 Meaning::Answer(Some(true)) => return Ok(Some(Answer::Sat)),
                 Meaning::Answer(Some(false)) => return Ok(Some(Answer::Unsat)),
-                Meaning::Answer(None) => return Ok(Some(Answer::Unknown("unknown".to_owned()))),
-                Meaning::Timeout => return Ok(Some(Answer::Unknown("timeout".to_owned()))),
+                Meaning::Answer(None) => return Ok(Some(Answer::Unknown(Unknown::Unsaid))),
+                Meaning::Timeout => return Ok(Some(Answer::Unknown(Unknown::Timeout))),
                 Meaning::Error(message) => return Err(self.reported(message)),
                 Meaning::Other => return Err(self.misunderstood("check-sat", reply.text())),
             }
@@ -141,7 +141,7 @@ impl Exchange {
 
     /// Why the solver said unknown, in the reply to [`REASON`] after so many that do not matter. A solver that does not say
     /// so soon is not waited for, and not asked any more.
-    pub(super) fn reason(&mut self, after: usize, deadline: &Deadline) -> String {
+    pub(super) fn reason(&mut self, after: usize, deadline: &Deadline) -> Unknown {
         let deadline = deadline.within(PATIENCE);
         for _ in 0..after {
             self.next(&deadline);
@@ -151,7 +151,7 @@ impl Exchange {
             Next::Ended | Next::Deadline => None,
         };
         self.lost = reason.is_none();
-        reason.unwrap_or_else(|| "unknown".to_owned())
+        reason.map_or(Unknown::Unsaid, Unknown::from)
     }
 
     /// What the solver says its version is, after [`VERSION`] was sent. One that does not say so soon is not asked any

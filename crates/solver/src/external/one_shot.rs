@@ -12,8 +12,8 @@ use super::profile::FILE;
 use super::program::Program;
 use super::watchdog;
 use crate::deadline::Deadline;
-use crate::error::Error;
-use crate::session::{Answer, Identity, Options, Session, Told};
+use crate::error::{Error, Unknown};
+use crate::session::{Answer, Identity, Options, QuerySize, Session};
 
 /// Writes each query into a temporary file, with all questions after the check, since there is no asking later: the
 /// version, all values, why the answer is not known. What a solver says to those that do not fit its answer does not matter.
@@ -21,7 +21,7 @@ pub(super) struct OneShot {
     program: Program,
     options: Options,
     model: Option<BTreeMap<Term, Value>>,
-    told: Told,
+    size: QuerySize,
 }
 
 /// A query with its questions.
@@ -35,7 +35,7 @@ struct Query {
 
 impl OneShot {
     pub(super) fn new(program: Program, options: &Options) -> OneShot {
-        OneShot { program, options: options.clone(), model: None, told: Told::default() }
+        OneShot { program, options: options.clone(), model: None, size: QuerySize::default() }
     }
 
     fn run(&mut self, script: &Script, assumptions: &[Term], deadline: &Deadline) -> Result<Answer, Error> {
@@ -51,7 +51,7 @@ impl OneShot {
         exchange.keep(&text);
         exchange.close_input();
         let Some(answer) = exchange.answer(deadline)? else {
-            return Ok(Answer::Unknown(deadline.reason().to_owned()));
+            return Ok(Answer::Unknown(deadline.reason()));
         };
         if asks_version {
             self.program.version.learn(&exchange.version(deadline).unwrap_or_default());
@@ -66,7 +66,7 @@ impl OneShot {
                 self.model = Some(model);
                 Ok(Answer::Sat)
             }
-            Answer::Unknown(reason) if reason == "unknown" => {
+            Answer::Unknown(Unknown::Unsaid) => {
                 Ok(Answer::Unknown(exchange.reason(symbols.chunks(ASK).len(), deadline)))
             }
             answer => Ok(answer),
@@ -93,7 +93,7 @@ impl OneShot {
         let known = |t: &Term| terms.op(*t) == Op::Symbol && printer.is_declared(*t);
         let symbols: Vec<Term> = terms.iter().filter(known).collect();
         let (clauses, variables, bytes) = (script.len(), symbols.len(), text.len());
-        self.told = Told { clauses, variables, bytes, logic: Some(logic) };
+        self.size = QuerySize { clauses, variables, bytes, logic: Some(logic) };
         for asked in symbols.chunks(ASK) {
             text.extend_from_slice(&get_value(&printer, script, asked));
         }
@@ -121,10 +121,10 @@ impl Session for OneShot {
             return Ok(Answer::Unsat);
         }
         if deadline.passed() {
-            return Ok(Answer::Unknown(deadline.reason().to_owned()));
+            return Ok(Answer::Unknown(deadline.reason()));
         }
         match self.run(script, assumptions, deadline) {
-            Err(Error::Deadline { .. }) => Ok(Answer::Unknown(deadline.reason().to_owned())),
+            Err(Error::Deadline { .. }) => Ok(Answer::Unknown(deadline.reason())),
             answer => out_of_memory(answer),
         }
     }
@@ -145,7 +145,7 @@ impl Session for OneShot {
         Identity { name: self.program.name.clone(), version: self.program.version.get() }
     }
 
-    fn told(&self) -> Told {
-        self.told.clone()
+    fn size(&self) -> QuerySize {
+        self.size.clone()
     }
 }

@@ -3,13 +3,15 @@
 use super::emit::LARGEST;
 use super::{Note, Work};
 use crate::config;
+use crate::explain::Explain;
 use crate::failure::{self, Failure, Outcome};
 use crate::store::write_whole;
 use hyperplan_family::{
     About, Case, Dropped, Entry, Folder, Horizon, Layout, Map, Objective, Record, body_of, sha256,
 };
 use hyperplan_plan::{
-    self as plan, Config, EmitConfig, MinimizeError, Status, Track, Verdict, emit, minimize, solve,
+    self as plan, Config, EmitConfig, Fault, MinimizeError, Quantifiers, States, Status, Track, Verdict,
+    emit, minimize, solve,
 };
 use hyperplan_problem::{NoFiles, Overrides, Problem, read};
 use hyperplan_solver::{Deadline, Spec};
@@ -30,8 +32,8 @@ pub(super) struct One<'a> {
 /// How a benchmark is written.
 #[derive(Clone, Copy)]
 struct Encoding {
-    states: Option<plan::States>,
-    quantifiers: plan::Quantifiers,
+    states: Option<States>,
+    quantifiers: Quantifiers,
 }
 
 impl One<'_> {
@@ -95,7 +97,8 @@ impl One<'_> {
             (Verdict::Realizable, None) => Found::Least(u32::try_from(least.value).ok()),
             (Verdict::Unrealizable, _) => Found::Least(None),
             (_, reason) => {
-                let reason = reason.or(least.outcome.reason).unwrap_or_else(|| "unknown".to_owned());
+                let reason = reason.or(least.outcome.reason);
+                let reason = reason.map_or_else(String::new, |reason| Explain::default().reason(&reason));
                 let limit = self.work.limit.as_secs_f64();
                 Found::Undecided(format!("the least horizon was not found within {limit} s: {reason}"))
             }
@@ -104,12 +107,9 @@ impl One<'_> {
 
     /// What an error means for one instance; a bug of ours, or a solver's, ends everything.
     fn undecided(&self, error: &plan::Error) -> Outcome<String> {
-        match error.exit_code() {
-            2 | 3 => Ok(error.to_string()),
-            code => Err(Failure {
-                status: failure::Status::from_code(code),
-                message: format!("{}: {error}", self.case),
-            }),
+        match error.fault() {
+            Fault::Request | Fault::Time => Ok(Explain::default().error(error)),
+            Fault::Solver | Fault::Ours => Err(Explain::default().failure(self.case, error)),
         }
     }
 

@@ -1,16 +1,17 @@
 //! A second solver is asked whether what the first one finds unsatisfiable is so.
 
-use crate::config::Error;
+use super::{Dialogue, Oracle, Stop};
 use crate::evidence::{Claim, Evidence};
-use crate::oracle::{Dialogue, Oracle, Stop};
+use crate::fact::{Error, Fallen, Note, Worth};
 use hyperplan_smt::{Model, Script, Term, check_model};
 use hyperplan_solver::{Answer, Error as SolverError, open};
+use std::sync::Arc;
 use std::time::Instant;
 
 impl Oracle<'_> {
     /// Has unsat confirmed, where that was asked for. A second solver that does not know confirms nothing, which the
     /// user is told; one that contradicts is an error.
-    pub(crate) fn cross_check(&mut self, dialogue: &mut Dialogue, script: &Script) -> Result<(), Stop> {
+    pub(super) fn cross_check(&mut self, dialogue: &mut Dialogue, script: &Script) -> Result<(), Stop> {
         let Some(spec) = &self.config.cross_check else { return Ok(()) };
         let start = Instant::now();
         let second = match dialogue.second.take() {
@@ -26,21 +27,22 @@ impl Oracle<'_> {
         match checked {
             Ok(Answer::Unsat) => Ok(()),
             Ok(Answer::Sat) => Err(self.disagreement(dialogue, script).into()),
-            Ok(Answer::Unknown(reason)) => {
-                self.unconfirmed(spec.name(), &reason);
+            Ok(Answer::Unknown(unknown)) => {
+                self.unconfirmed(spec.name(), Fallen::Undecided(unknown.into()));
                 Ok(())
             }
             Err(error) if error.is_unsupported() => {
-                self.unconfirmed(spec.name(), &error.to_string());
+                self.unconfirmed(spec.name(), Fallen::Failed(Arc::new(error.into())));
                 Ok(())
             }
             Err(error) => Err(Error::Solver(error).into()),
         }
     }
 
-    fn unconfirmed(&mut self, solver: &str, reason: &str) {
-        let note = format!("an unsat was not confirmed by {solver}: {reason}");
-        if !self.notes.contains(&note) {
+    /// Notes it, unless the same was noted before.
+    fn unconfirmed(&mut self, solver: &str, why: Fallen) {
+        let note = Note::Unconfirmed { solver: solver.to_owned(), why };
+        if self.notes.iter().all(|known| known.to_string() != note.to_string()) {
             self.notes.push(note);
         }
     }
@@ -58,13 +60,12 @@ impl Oracle<'_> {
         let model: Model = symbols.into_iter().zip(values).collect();
         let result = check_model(script, &model);
         let worth = match (result.violated, result.unknown) {
-            _ if !known => "but gives no model of the query",
-            (Some(_), _) => "but its model does not satisfy the query",
-            (None, 0) => "and its model satisfies the query",
-            (None, _) => "with a model that cannot be evaluated on the query",
+            _ if !known => Worth::Missing,
+            (Some(_), _) => Worth::Wrong,
+            (None, 0) => Worth::Right,
+            (None, _) => Worth::Unknown,
         };
         let evidence = Evidence::new(script, &Claim::Both { unsat: &unsat, sat: &sat, model: &model });
-        let what = format!("{worth}, {}", evidence.keep(self.config));
-        Error::Disagreement { unsat: unsat.name, sat: sat.name, what }
+        Error::Disagreement { unsat: unsat.name, sat: sat.name, worth, query: Box::new(evidence) }
     }
 }

@@ -9,21 +9,22 @@ fn ended(code: i32, stdout: &str, stderr: &str) -> Measured {
     }
 }
 
-fn said(verdict: &str, reason: Option<&str>) -> String {
-    let reason = serde_json::to_string(&reason).expect("it is a text");
+fn said(verdict: &str, code: Option<&str>) -> String {
+    let code = serde_json::to_string(&code).expect("it is a text");
     format!(
-        r#"{{"file": "a.hp", "objective": "sp", "verdict": "{verdict}", "reason": {reason}, "horizon": {{"p": 6, "q": null}},
+        r#"{{"file": "a.hp", "objective": "sp", "verdict": "{verdict}", "reason": {code},
+        "reason_code": {code}, "witness": null, "horizon": {{"p": 6, "q": null}},
         "verified": "by-search", "solver": {{"name": "z3", "version": "4.8"}}, "quantifiers": "expand", "states": "onehot",
         "logic": "QF_BV", "size": {{"variables": 3, "clauses": 4, "bytes": 56}},
-        "iterations": 2, "seconds": {{"solve": 0.25}}}}"#
+        "iterations": 2, "seconds": {{"read": 0, "encode": 0, "solve": 0.25, "verify": 0, "total": 0.5}}}}"#
     )
     .replace('\n', " ")
 }
 
 #[test]
 fn answers_to_problems() {
-    let outcome = of_problem(&ended(0, &said("realizable", None), ""), false);
-    let expected = Outcome {
+    let reading = of_problem(&ended(0, &said("realizable", None), ""), false);
+    let expected = Reading {
         status: Status::Sat,
         expected: None,
         verified: Some("by-search".to_owned()),
@@ -37,13 +38,14 @@ fn answers_to_problems() {
         logic: Some("QF_BV".to_owned()),
         solver_s: Some(0.25),
         rounds: Some(2),
+        reason_code: None,
         message: None,
     };
-    assert_eq!(outcome, expected);
+    assert_eq!(reading, expected);
     let status = |code, verdict, reason| of_problem(&ended(code, &said(verdict, reason), ""), false).status;
     assert_eq!(status(1, "unrealizable", None), Status::Unsat);
     assert_eq!(status(3, "unknown", Some("timeout")), Status::Timeout);
-    assert_eq!(status(3, "unknown", Some("out of memory")), Status::Memout);
+    assert_eq!(status(3, "unknown", Some("out-of-memory")), Status::Memout);
     assert_eq!(status(3, "unknown", Some("incomplete")), Status::Unknown);
     // A status that does not go with what was said is not to be believed.
     assert_eq!(status(1, "realizable", None), Status::Error);
@@ -52,22 +54,23 @@ fn answers_to_problems() {
 
 #[test]
 fn failures_on_problems() {
-    let outcome = of_problem(&ended(2, "", "error: sp: no quantifiers\n"), false);
+    let reading = of_problem(&ended(2, "", "error: sp: no quantifiers\n"), false);
     assert_eq!(
-        (outcome.status, outcome.message.as_deref()),
+        (reading.status, reading.message.as_deref()),
         (Status::Unsupported, Some("sp: no quantifiers"))
     );
     let wrong = "warning: x\nerror: sp: solver fake gave a wrong model: it does not satisfy the query\n";
     for over in [false, true] {
-        let outcome = of_problem(&ended(4, "", wrong), over);
-        assert_eq!((outcome.status, outcome.verified.as_deref()), (Status::Error, Some("refuted")));
+        let failed = r#"{"objective": "sp", "reason": "x", "reason_code": "wrong-model"}"#;
+        let reading = of_problem(&ended(4, failed, wrong), over);
+        assert_eq!((reading.status, reading.verified.as_deref()), (Status::Error, Some("refuted")));
     }
-    let outcome = of_problem(&ended(4, "", "error: sp: solver fake ended without an answer\n"), false);
-    assert_eq!((outcome.status, outcome.verified), (Status::Error, None));
+    let reading = of_problem(&ended(4, "", "error: sp: solver fake ended without an answer\n"), false);
+    assert_eq!((reading.status, reading.verified), (Status::Error, None));
     assert_eq!(of_problem(&ended(5, "", "error: x"), false).verified.as_deref(), Some("refuted"));
     let killed = Measured { signal: Some(11), ..Measured::default() };
-    let outcome = of_problem(&killed, false);
-    assert_eq!((outcome.status, outcome.message.as_deref()), (Status::Error, Some("ended by signal 11")));
+    let reading = of_problem(&killed, false);
+    assert_eq!((reading.status, reading.message.as_deref()), (Status::Error, Some("ended by signal 11")));
     let killed = Measured { signal: Some(9), exceeded: Some(Exceeded::Memory), ..Measured::default() };
     assert_eq!(of_problem(&killed, false).status, Status::Memout);
     let long = of_problem(&ended(4, "", &"ä".repeat(2000)), false).message.expect("there is one");
@@ -81,8 +84,8 @@ fn query(checks: &[Option<Answer>]) -> Query {
 #[test]
 fn answers_to_queries() {
     let of = |stdout: &str, checks: &[Option<Answer>]| {
-        let outcome = of_query(&ended(0, stdout, ""), &query(checks), false);
-        (outcome.status, outcome.expected, outcome.message)
+        let reading = of_query(&ended(0, stdout, ""), &query(checks), false);
+        (reading.status, reading.expected, reading.message)
     };
     let sat = Some(Answer::Sat);
     assert_eq!(of("sat\n((define-fun x () Bool\n true))\n", &[None]), (Status::Sat, None, None));
@@ -100,8 +103,8 @@ fn answers_to_queries() {
 #[test]
 fn several_checks() {
     let of = |stdout: &str, checks: &[Option<Answer>]| {
-        let outcome = of_query(&ended(0, stdout, ""), &query(checks), false);
-        (outcome.status, outcome.expected, outcome.message.expect("it says why"))
+        let reading = of_query(&ended(0, stdout, ""), &query(checks), false);
+        (reading.status, reading.expected, reading.message.expect("it says why"))
     };
     let (sat, unsat) = (Some(Answer::Sat), Some(Answer::Unsat));
     let why = "2 checks in one file; only answers against a known status count".to_owned();
@@ -115,8 +118,8 @@ fn several_checks() {
 #[test]
 fn failures_on_queries() {
     let of = |code, stdout: &str, stderr: &str| {
-        let outcome = of_query(&ended(code, stdout, stderr), &query(&[None]), false);
-        (outcome.status, outcome.message.expect("it says why"))
+        let reading = of_query(&ended(code, stdout, stderr), &query(&[None]), false);
+        (reading.status, reading.message.expect("it says why"))
     };
     assert_eq!(of(1, "(error \"line 1: no\")\n", ""), (Status::Error, "(error \"line 1: no\")".to_owned()));
     assert_eq!(of(1, "(error \"logic not supported\")\n", "").0, Status::Unsupported);
@@ -136,7 +139,7 @@ fn several_answers_to_one_check_are_none() {
     let query = Query { checks: vec![None], ..Query::default() };
     let of = |stdout: &str| of_query(&ended(0, stdout, ""), &query, false);
     assert_eq!(of("sat\nsat\n").status, Status::Sat);
-    let outcome = of("sat\nunsat\n");
-    assert_eq!(outcome.status, Status::Error);
-    assert_eq!(outcome.message.as_deref(), Some("it gave several answers to one check"));
+    let reading = of("sat\nunsat\n");
+    assert_eq!(reading.status, Status::Error);
+    assert_eq!(reading.message.as_deref(), Some("it gave several answers to one check"));
 }

@@ -1,7 +1,7 @@
 //! What a run's output means.
 
-use serde::Deserialize;
-use std::collections::BTreeMap;
+use hyperplan_problem::answer::{self, Failed, ReasonCode, Verdict};
+use serde::de::DeserializeOwned;
 
 use crate::query::Query;
 use crate::record::{Answer, Status};
@@ -12,7 +12,7 @@ const MESSAGE: usize = 500;
 
 /// What a run came to.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Outcome {
+pub(crate) struct Reading {
     pub(crate) status: Status,
     pub(crate) expected: Option<Answer>,
     pub(crate) verified: Option<String>,
@@ -26,12 +26,13 @@ pub(crate) struct Outcome {
     pub(crate) logic: Option<String>,
     pub(crate) solver_s: Option<f64>,
     pub(crate) rounds: Option<u64>,
+    pub(crate) reason_code: Option<ReasonCode>,
     pub(crate) message: Option<String>,
 }
 
-impl Outcome {
-    pub(crate) fn new(status: Status, message: Option<String>) -> Outcome {
-        Outcome {
+impl Reading {
+    pub(crate) fn new(status: Status, message: Option<String>) -> Reading {
+        Reading {
             status,
             expected: None,
             verified: None,
@@ -45,15 +46,16 @@ impl Outcome {
             logic: None,
             solver_s: None,
             rounds: None,
+            reason_code: None,
             message,
         }
     }
 }
 
-impl Outcome {
+impl Reading {
     /// With the size of a query.
-    pub(crate) fn sized(self, query: &Query) -> Outcome {
-        Outcome {
+    pub(crate) fn sized(self, query: &Query) -> Reading {
+        Reading {
             logic: query.logic.clone(),
             variables: Some(query.variables),
             assertions: Some(query.assertions),
@@ -63,57 +65,18 @@ impl Outcome {
     }
 }
 
-/// The part of `solve --format json` that is of interest.
-#[derive(Deserialize)]
-struct Said {
-    verdict: Verdict,
-    reason: Option<String>,
-    horizon: BTreeMap<String, Option<u64>>,
-    verified: Option<String>,
-    solver: Solver,
-    quantifiers: String,
-    states: String,
-    logic: Option<String>,
-    iterations: u64,
-    size: Size,
-    seconds: Seconds,
-}
-
-#[derive(Clone, Copy, PartialEq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum Verdict {
-    Realizable,
-    Unrealizable,
-    Unknown,
-}
-
-#[derive(Deserialize)]
-struct Solver {
-    version: String,
-}
-
-#[derive(Deserialize)]
-struct Size {
-    variables: u64,
-    clauses: u64,
-    bytes: Option<u64>,
-}
-
-#[derive(Deserialize)]
-struct Seconds {
-    solve: f64,
-}
-
 /// What `hyperplan solve --format json` came to.
-pub(crate) fn of_problem(measured: &Measured, over: bool) -> Outcome {
-    let said = measured.stdout.lines().find_map(|line| serde_json::from_str::<Said>(line).ok());
+pub(crate) fn of_problem(measured: &Measured, over: bool) -> Reading {
+    let said = first_line::<answer::Answer>(measured);
+    let failed = first_line::<Failed>(measured);
+    let code = said.as_ref().map_or_else(|| Some(failed.as_ref()?.reason_code), |said| said.reason_code);
     let status = limits(measured, over).or_else(|| {
         Some(match (measured.exit_code?, said.as_ref()?.verdict) {
             (0, Verdict::Realizable) => Status::Sat,
             (1, Verdict::Unrealizable) => Status::Unsat,
-            (3, Verdict::Unknown) => match said.as_ref()?.reason.as_deref() {
-                Some("timeout") => Status::Timeout,
-                Some("out of memory") => Status::Memout,
+            (3, Verdict::Unknown) => match code {
+                Some(ReasonCode::Timeout) => Status::Timeout,
+                Some(ReasonCode::OutOfMemory) => Status::Memout,
                 _ => Status::Unknown,
             },
             _ => Status::Error,
@@ -131,37 +94,37 @@ pub(crate) fn of_problem(measured: &Measured, over: bool) -> Outcome {
         Status::Error => errors.or(reason).or_else(|| silent(measured)),
         _ => reason.or(errors),
     };
-    let refuted = match measured.exit_code {
-        Some(5) => true,
-        Some(4) => message.as_deref().is_some_and(|message| message.contains("wrong model")),
-        _ => false,
-    };
-    let mut outcome = Outcome::new(status, message.map(shortened));
-    if refuted {
-        outcome.verified = Some("refuted".to_owned());
-    }
-    let Some(said) = said else { return outcome };
+    let refuted = measured.exit_code == Some(5) || code == Some(ReasonCode::WrongModel);
+    let verified = refuted.then(|| "refuted".to_owned());
+    let reading = Reading { verified, reason_code: code, ..Reading::new(status, message.map(shortened)) };
+    let Some(said) = said else { return reading };
     let some = |text: String| Some(text).filter(|text| !text.is_empty());
-    Outcome {
-        verified: outcome.verified.take().or(said.verified),
+    let count = |n: usize| Some(n as u64);
+    Reading {
+        verified: reading.verified.or_else(|| said.verified.map(|how| how.name().to_owned())),
         version: some(said.solver.version),
-        states: some(said.states),
-        quantifiers: some(said.quantifiers),
-        horizon: said.horizon.into_values().flatten().max(),
-        variables: Some(said.size.variables),
-        assertions: Some(said.size.clauses),
-        bytes: said.size.bytes,
+        states: some(said.states.to_string()),
+        quantifiers: some(said.quantifiers.to_string()),
+        horizon: said.horizon.0.iter().filter_map(|(_, steps)| steps.map(u64::from)).max(),
+        variables: count(said.size.variables),
+        assertions: count(said.size.clauses),
+        bytes: said.size.bytes.and_then(count),
         logic: said.logic,
         solver_s: Some(said.seconds.solve),
-        rounds: Some(said.iterations),
-        ..outcome
+        rounds: Some(u64::from(said.iterations)),
+        ..reading
     }
+}
+
+/// What the first line of output says that says such a thing.
+fn first_line<T: DeserializeOwned>(measured: &Measured) -> Option<T> {
+    measured.stdout.lines().find_map(|line| serde_json::from_str(line).ok())
 }
 
 /// What a solver said to a query. What it complains of after its answer, such as a model that it cannot give, does not
 /// count; before it, the answer is to something else than was asked. Of several checks only an answer that contradicts
 /// what is known counts: one status cannot stand for all of them.
-pub(crate) fn of_query(measured: &Measured, query: &Query, over: bool) -> Outcome {
+pub(crate) fn of_query(measured: &Measured, query: &Query, over: bool) -> Reading {
     let answers: Vec<Status> = measured.stdout.lines().filter_map(answer).collect();
     let error = early_error(&measured.stdout, query.checks.len());
     if query.checks.len() > 1 {
@@ -170,10 +133,10 @@ pub(crate) fn of_query(measured: &Measured, query: &Query, over: bool) -> Outcom
     let expected = query.checks.first().copied().flatten();
     let trouble = |status, message: Option<String>| {
         let message = message.or_else(|| last_error(&measured.stderr)).or_else(|| silent(measured));
-        Outcome { expected, ..Outcome::new(status, message.map(shortened)) }
+        Reading { expected, ..Reading::new(status, message.map(shortened)) }
     };
     if let Some(status) = limits(measured, over) {
-        return Outcome { expected, ..Outcome::new(status, None) };
+        return Reading { expected, ..Reading::new(status, None) };
     }
     let all = format!("{}\n{}", error.unwrap_or_default(), measured.stderr).to_lowercase();
     let said = answers.first().copied().filter(|_| !query.checks.is_empty() && error.is_none());
@@ -194,7 +157,7 @@ pub(crate) fn of_query(measured: &Measured, query: &Query, over: bool) -> Outcom
     if answers.iter().any(|answer| *answer != status) {
         return trouble(Status::Error, Some("it gave several answers to one check".to_owned()));
     }
-    Outcome { expected, ..Outcome::new(status, None) }
+    Reading { expected, ..Reading::new(status, None) }
 }
 
 /// The first error before as many answers as there are checks.
@@ -209,15 +172,15 @@ fn early_error(stdout: &str, checks: usize) -> Option<&str> {
 }
 
 /// Several checks in one file are not supported, but what contradicts a known status is told of.
-fn of_several(answers: &[Status], query: &Query, failed: bool) -> Outcome {
+fn of_several(answers: &[Status], query: &Query, failed: bool) -> Reading {
     let checks = query.checks.len();
     let mut pairs = answers.iter().copied().zip(query.checks.iter().copied()).zip(1..);
     let wrong = pairs.find(|((said, known), _)| known.is_some_and(|known| contradicts(*said, known)));
     match wrong.filter(|_| !failed) {
         Some(((status, expected), check)) => {
-            Outcome { expected, ..Outcome::new(status, Some(format!("check {check} of {checks}"))) }
+            Reading { expected, ..Reading::new(status, Some(format!("check {check} of {checks}"))) }
         }
-        None => Outcome::new(
+        None => Reading::new(
             Status::Unsupported,
             Some(format!("{checks} checks in one file; only answers against a known status count")),
         ),

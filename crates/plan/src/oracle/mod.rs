@@ -1,17 +1,21 @@
 //! The solver as the search uses it: checks with a clock, and models that are evaluated before they are believed.
 
-use crate::config::{Config, Error};
-use crate::emit::Tape;
+mod cross_check;
+#[cfg(test)]
+mod tests;
+
+use crate::config::Config;
 use crate::evidence::{Claim, Evidence};
+use crate::fact::{Error, Note, Reason, Wrong};
 use hyperplan_smt::{Model, Script, Term, check_model};
-use hyperplan_solver::{self as solver, Answer, Identity, Options, Session, Spec, Told, open};
+use hyperplan_solver::{self as solver, Answer, Identity, Options, QuerySize, Session, Spec, Unknown, open};
 use std::time::Instant;
 
 /// Why a search ended without an answer.
 #[derive(Debug)]
 pub(crate) enum Stop {
     /// Undecided, for this reason.
-    Unknown(String),
+    Unknown(Reason),
     /// A failure.
     Error(Error),
 }
@@ -22,20 +26,45 @@ impl<E: Into<Error>> From<E> for Stop {
     }
 }
 
+/// Who is asked where no solver was named: the embedded one, or, about integers and reals, one that is found.
+pub(crate) fn solver_for(arithmetic: bool) -> Option<Spec> {
+    if arithmetic { Spec::for_arithmetic() } else { Some(Spec::Builtin) }
+}
+
+/// Hears what is said in dialogues, which nest.
+pub(crate) trait Listener {
+    /// A dialogue begins.
+    fn opened(&mut self);
+    /// The innermost dialogue ends.
+    fn closed(&mut self);
+    /// The innermost dialogue says what is new in its script, and gets an answer.
+    fn checked(&mut self, script: &Script, satisfiable: bool);
+}
+
 /// Opens sessions and keeps the accounts.
 pub(crate) struct Oracle<'c> {
-    pub(crate) config: &'c Config,
+    config: &'c Config,
     identity: Option<Identity>,
     /// The last query whose model could not be evaluated, since quantifiers cannot.
     unproved: Option<Evidence>,
+    notes: Vec<Note>,
+    solving: f64,
+    largest: QuerySize,
+    listener: Option<&'c mut dyn Listener>,
+}
+
+/// What is known of all that was asked of an oracle.
+pub(crate) struct Account {
+    /// Who answered; the name asked for, where nobody was asked.
+    pub(crate) solver: Identity,
     /// What the user should know of the solvers.
-    pub(crate) notes: Vec<String>,
-    /// Time spent waiting for solvers.
+    pub(crate) notes: Vec<Note>,
+    /// Seconds spent waiting for solvers.
     pub(crate) solving: f64,
     /// The largest query.
-    pub(crate) largest: Told,
-    /// Where what is said is kept, for a benchmark.
-    pub(crate) tape: Option<Tape>,
+    pub(crate) largest: QuerySize,
+    /// The last query whose model could not be evaluated.
+    unproved: Option<Evidence>,
 }
 
 impl<'c> Oracle<'c> {
@@ -46,8 +75,25 @@ impl<'c> Oracle<'c> {
             unproved: None,
             notes: Vec::new(),
             solving: 0.0,
-            largest: Told::default(),
-            tape: None,
+            largest: QuerySize::default(),
+            listener: None,
+        }
+    }
+
+    /// With somebody who hears what is said.
+    pub(crate) fn heard_by(self, listener: &'c mut dyn Listener) -> Self {
+        Oracle { listener: Some(listener), ..self }
+    }
+
+    /// Ends all that was asked.
+    pub(crate) fn into_account(self) -> Account {
+        let nobody = || Identity { name: self.config.solver.name().to_owned(), version: String::new() };
+        Account {
+            solver: self.identity.unwrap_or_else(nobody),
+            notes: self.notes,
+            solving: self.solving,
+            largest: self.largest,
+            unproved: self.unproved,
         }
     }
 
@@ -65,16 +111,16 @@ impl<'c> Oracle<'c> {
         let start = Instant::now();
         let session = open(&self.config.solver, &options)?;
         self.solving += start.elapsed().as_secs_f64();
-        if let Some(tape) = &mut self.tape {
-            tape.open();
+        if let Some(listener) = &mut self.listener {
+            listener.opened();
         }
         Ok(Dialogue { session, trusted: self.config.solver == Spec::Builtin, options, second: None })
     }
 
     /// Ends the dialogue that was opened last.
     pub(crate) fn close(&mut self, _: Dialogue) {
-        if let Some(tape) = &mut self.tape {
-            tape.close();
+        if let Some(listener) = &mut self.listener {
+            listener.closed();
         }
     }
 
@@ -86,25 +132,25 @@ impl<'c> Oracle<'c> {
         let start = Instant::now();
         let answer = dialogue.session.check(script, &[], &self.config.deadline);
         self.solving += start.elapsed().as_secs_f64();
-        self.largest = std::mem::take(&mut self.largest).max(dialogue.session.told());
+        self.largest = std::mem::take(&mut self.largest).max(dialogue.session.size());
         let answer = answer?;
         if answer != Answer::Sat {
             self.introduce(dialogue);
         }
-        if let (Some(tape), Answer::Sat | Answer::Unsat) = (&mut self.tape, &answer) {
-            tape.check(script, answer == Answer::Sat);
+        if let (Some(listener), Answer::Sat | Answer::Unsat) = (&mut self.listener, &answer) {
+            listener.checked(script, answer == Answer::Sat);
         }
         match answer {
             Answer::Sat => Ok(true),
             Answer::Unsat => self.cross_check(dialogue, script).map(|()| false),
             // The solver may give its own name to what our clock did.
             Answer::Unknown(_) if self.config.deadline.passed() => Err(Stop::Unknown(self.late())),
-            Answer::Unknown(reason) => Err(Stop::Unknown(reason)),
+            Answer::Unknown(unknown) => Err(Stop::Unknown(unknown.into())),
         }
     }
 
-    fn late(&self) -> String {
-        self.config.deadline.reason().to_owned()
+    fn late(&self) -> Reason {
+        self.config.deadline.reason().into()
     }
 
     /// The values of the symbols that describe the wanted paths. The model of an external solver is evaluated: one
@@ -121,7 +167,7 @@ impl<'c> Oracle<'c> {
         self.solving += start.elapsed().as_secs_f64();
         match &values {
             Err(solver::Error::Deadline { .. }) => return Err(Stop::Unknown(self.late())),
-            Err(solver::Error::Memory { .. }) => return Err(Stop::Unknown("out of memory".to_owned())),
+            Err(solver::Error::Memory { .. }) => return Err(Stop::Unknown(Unknown::Memory.into())),
             _ => {}
         }
         let model: Model = symbols.into_iter().zip(values?).collect();
@@ -141,23 +187,15 @@ impl<'c> Oracle<'c> {
         let claim = Claim::Sat { by: &dialogue.session.identity(), model, violated: result.violated };
         let evidence = Evidence::new(script, &claim);
         if result.violated.is_some() {
-            let what = format!("it does not satisfy the query, {}", evidence.keep(self.config));
-            return Err(self.wrong(dialogue, &what));
+            let solver = dialogue.session.identity().name;
+            return Err(Error::WrongModel {
+                solver,
+                wrong: Wrong::Violates,
+                query: Some(Box::new(evidence)),
+            });
         }
         self.unproved = Some(evidence);
         Ok(())
-    }
-
-    /// A model whose paths fail comes with its query, where that could not be evaluated.
-    pub(crate) fn with_evidence(&self, error: Error) -> Error {
-        match (error, &self.unproved) {
-            (Error::WrongModel { solver, what }, Some(evidence)) => {
-                let kept = evidence.keep(self.config);
-                let what = format!("{what}; its model could not be evaluated on the query, {kept}");
-                Error::WrongModel { solver, what }
-            }
-            (error, _) => error,
-        }
     }
 
     /// Takes note of who answers, once the solver has had the occasion to say its version.
@@ -165,28 +203,28 @@ impl<'c> Oracle<'c> {
         self.identity.get_or_insert_with(|| dialogue.session.identity());
     }
 
-    /// A model that describes no path, or whose paths fail.
-    pub(crate) fn wrong(&self, dialogue: &Dialogue, what: &str) -> Error {
-        Error::WrongModel { solver: dialogue.session.identity().name, what: what.into() }
+    /// A model that describes no path.
+    pub(crate) fn no_path(&self, dialogue: &Dialogue) -> Error {
+        Error::WrongModel { solver: dialogue.session.identity().name, wrong: Wrong::NoPath, query: None }
     }
+}
 
-    /// Who answered; the name asked for, where nobody was asked.
-    pub(crate) fn identity(&self) -> Identity {
-        self.identity.clone().unwrap_or_else(|| Identity {
-            name: self.config.solver.name().to_owned(),
-            version: String::new(),
-        })
+impl Account {
+    /// A model whose paths are defeated; with its query, where it could not be evaluated on that.
+    pub(crate) fn wrong_model(&self, defeat: String) -> Error {
+        let query = self.unproved.clone().map(Box::new);
+        Error::WrongModel { solver: self.solver.name.clone(), wrong: Wrong::Defeated(defeat), query }
     }
 }
 
 /// One dialogue with a solver about one script.
 pub(crate) struct Dialogue {
-    pub(crate) session: Box<dyn Session>,
+    session: Box<dyn Session>,
     /// The embedded engine's models are evaluated only when verification fails.
     trusted: bool,
-    pub(crate) options: Options,
+    options: Options,
     /// The solver that checks what this one says is unsatisfiable.
-    pub(crate) second: Option<Box<dyn Session>>,
+    second: Option<Box<dyn Session>>,
 }
 
 fn with_all_symbols(script: &Script, wanted: Vec<Term>) -> Vec<Term> {

@@ -1,0 +1,181 @@
+//! How the quantifiers of an objective are decided: in one query, or by counterexamples.
+
+use crate::cegis::{Assignment, Cegis};
+use crate::config::{Config, Quantifiers};
+use crate::direct::{self, Direct};
+use crate::fact::{Because, Error, Fault, Unsupported};
+use crate::oracle::{Oracle, Stop};
+use crate::prepare::{is_existential, is_finite};
+use hyperplan_encode::{Encoder, Goal, Narrowing};
+use hyperplan_problem::PathId;
+use hyperplan_solver::Spec;
+
+/// Runs that are hardly longer than the shortest make small queries, so they are tried first; then longer ones, and
+/// then all, if there are others.
+pub(crate) const SLACKS: [Option<u32>; 4] = [Some(4), Some(16), Some(64), None];
+
+/// After so many checks a search over infinitely many choices is taken to have no end.
+const ENDLESS: u32 = 200;
+
+/// What was found, and how.
+pub(crate) struct Decision {
+    /// How quantifiers were decided in the end.
+    pub(crate) quantifiers: Quantifiers,
+    /// Why so, where the choice was ours.
+    pub(crate) because: Option<Because>,
+    /// Checks of the outermost query.
+    pub(crate) rounds: u32,
+    /// The paths of the leading block that decide the objective, if there are some.
+    pub(crate) found: Result<Option<Assignment>, Stop>,
+}
+
+impl Decision {
+    /// Decides an objective.
+    pub(crate) fn of(encoder: &Encoder<'_>, config: &Config, oracle: &mut Oracle<'_>) -> Decision {
+        let mut search = Search::new(encoder, config);
+        let found = search.run(oracle);
+        search.end(found)
+    }
+
+    /// Nothing was asked, for this reason.
+    pub(crate) fn stopped(encoder: &Encoder<'_>, config: &Config, stop: Stop) -> Decision {
+        Search::new(encoder, config).end(Err(stop))
+    }
+}
+
+struct Search<'s, 'a> {
+    encoder: &'s Encoder<'a>,
+    config: &'s Config,
+    blocks: Vec<Vec<PathId>>,
+    /// The truth value that the player of the leading block wants the formula to have.
+    want: bool,
+    /// The choice that is left, and then the one that was made.
+    quantifiers: Quantifiers,
+    because: Option<Because>,
+    rounds: u32,
+}
+
+impl<'s, 'a> Search<'s, 'a> {
+    fn new(encoder: &'s Encoder<'a>, config: &'s Config) -> Self {
+        let blocks = encoder.objective.blocks();
+        // A single block has no quantifiers to decide: its query has none.
+        let alone = blocks.len() == 1;
+        Search {
+            encoder,
+            config,
+            want: is_existential(encoder.objective),
+            quantifiers: if alone { Quantifiers::Expand } else { config.quantifiers },
+            because: alone.then_some(Because::OneBlock),
+            rounds: 0,
+            blocks,
+        }
+    }
+
+    fn end(self, found: Result<Option<Assignment>, Stop>) -> Decision {
+        let Search { quantifiers, because, rounds, .. } = self;
+        Decision { quantifiers, because, rounds, found }
+    }
+
+    fn run(&mut self, oracle: &mut Oracle<'_>) -> Result<Option<Assignment>, Stop> {
+        if self.quantifiers == Quantifiers::Keep {
+            self.rounds = 1;
+            return self.keep(oracle);
+        }
+        let choice = self.quantifiers;
+        for narrowing in self.narrowings() {
+            let (found, exact) = match self.query(choice, narrowing)? {
+                Some(direct) => {
+                    self.quantifiers = Quantifiers::Expand;
+                    self.rounds += 1;
+                    (direct.solve(oracle, 1)?, direct.exact)
+                }
+                None => self.by_counterexamples(choice, narrowing, oracle)?,
+            };
+            if found.is_some() || exact {
+                return Ok(found);
+            }
+        }
+        Ok(None)
+    }
+
+    /// The query without quantifiers, where one is wanted.
+    fn query(&mut self, choice: Quantifiers, narrowing: Narrowing) -> Result<Option<Direct<'s, 'a>>, Stop> {
+        let Search { encoder, ref blocks, want, .. } = *self;
+        match choice {
+            // Without a second block there is nothing to expand: the search by counterexamples asks one query.
+            Quantifiers::Expand if blocks.len() > 1 => {
+                Ok(Some(direct::expand(encoder, blocks, want, narrowing)?))
+            }
+            Quantifiers::Auto => {
+                let query = direct::sweep(encoder, blocks, want, narrowing)?;
+                self.because = Some(because(encoder, blocks, query.is_some()));
+                Ok(query)
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// Searches by counterexamples; also whether nothing found means that there is nothing.
+    fn by_counterexamples(
+        &mut self,
+        choice: Quantifiers,
+        narrowing: Narrowing,
+        oracle: &mut Oracle<'_>,
+    ) -> Result<(Option<Assignment>, bool), Stop> {
+        let auto = choice == Quantifiers::Auto;
+        if auto {
+            self.quantifiers = Quantifiers::Cegis;
+        }
+        let patient = !auto || is_finite(self.encoder.problem, self.encoder.objective);
+        let objective = self.encoder.objective;
+        let goal = Goal::new(&objective.formula, self.want);
+        let mut cegis = Cegis::new(self.encoder, oracle, &self.blocks);
+        (cegis.narrowing, cegis.most_checks) = (narrowing, (!patient).then_some(ENDLESS));
+        let found = cegis.find(0, &vec![None; objective.paths.len()], &goal, 1);
+        self.rounds += cegis.rounds;
+        let exact = cegis.exact;
+        match found {
+            // Numbers without bounds have infinitely many counterexamples; the solver may know better.
+            Err(Stop::Unknown(reason)) if !patient && !self.config.deadline.passed() => {
+                self.quantifiers = Quantifiers::Keep;
+                self.because = Some(Because::NoEnd);
+                match self.keep(oracle) {
+                    // Not every solver takes every prefix of quantifiers.
+                    Err(Stop::Error(error)) if error.fault() == Fault::Request => Err(Stop::Unknown(reason)),
+                    answer => Ok((answer?, true)),
+                }
+            }
+            found => Ok((found?.pop(), exact)),
+        }
+    }
+
+    /// Which runs of the leading block are tried, one after the other. Where the choice is ours, a search finds a run
+    /// that is done first: where nothing else is read it decides; where no path is tied to it, it is worth a guess.
+    fn narrowings(&self) -> Vec<Narrowing> {
+        let auto = self.config.quantifiers == Quantifiers::Auto;
+        let alone = self.blocks.len() == 1;
+        let guess = auto && !alone && !self.encoder.objective.has_ties();
+        let guess = guess.then_some(Narrowing { slack: SLACKS[0], one_run: true });
+        let steps = SLACKS.map(|slack| Narrowing { slack, one_run: auto && alone && slack.is_some() });
+        guess.into_iter().chain(steps).collect()
+    }
+
+    /// Asks one query with its quantifiers, of a solver that takes them.
+    fn keep(&self, oracle: &mut Oracle<'_>) -> Result<Option<Assignment>, Stop> {
+        if self.config.solver == Spec::Builtin {
+            return Err(Error::from(Unsupported::KeptQuantifiers).into());
+        }
+        direct::keep(self.encoder, &self.blocks, self.want)?.solve(oracle, self.blocks.len())
+    }
+}
+
+/// Why quantifiers are decided as they are, where the choice is ours.
+fn because(encoder: &Encoder<'_>, blocks: &[Vec<PathId>], swept: bool) -> Because {
+    match blocks {
+        _ if swept => Because::Swept,
+        [_, last] if last.len() > 1 => Because::SeveralPaths,
+        [_, _] if !encoder.states.is_enumerated() => Because::Symbolic,
+        [_, _] => Because::ManyRuns,
+        _ => Because::Alternations,
+    }
+}

@@ -1,0 +1,176 @@
+//! One solver's search: from an objective to a verified answer.
+
+use crate::cegis::Assignment;
+use crate::config::{Config, Outcome, Seconds, States, Verdict, Verified};
+use crate::confirm::confirm;
+use crate::decide::Decision;
+use crate::fact::{Error, Note, Reason, Unsupported};
+use crate::oracle::{Account, Oracle, Stop};
+use crate::prepare::{decided, is_existential, no_dead_ends, without_paths};
+use hyperplan_encode::{self as encode, Encoder, Graphs};
+use hyperplan_problem::{Objective, PathId, Problem, Strategy};
+use hyperplan_solver::Spec;
+use std::time::Instant;
+
+/// Decides an objective with one solver; systems that were enumerated before are not enumerated again. Where the choice
+/// of states is ours and too many can matter, the search goes on symbolically.
+pub(crate) fn search(
+    problem: &Problem,
+    objective: &Objective,
+    config: &Config,
+    graphs: &Graphs,
+) -> Result<Outcome, Error> {
+    match attempt(problem, objective, config, graphs) {
+        Err(Error::Encode(error @ encode::Error::TooLarge { .. })) if config.states.is_none() => {
+            let symbolic = Config { states: Some(States::Bitvec), ..config.clone() };
+            let mut outcome = attempt(problem, objective, &symbolic, graphs)?;
+            outcome.notes.push(Note::Symbolic(error));
+            Ok(outcome)
+        }
+        answer => answer,
+    }
+}
+
+fn attempt(
+    problem: &Problem,
+    objective: &Objective,
+    config: &Config,
+    graphs: &Graphs,
+) -> Result<Outcome, Error> {
+    let start = Instant::now();
+    let stop = || config.deadline.passed();
+    let (wish, limits) = (config.states, config.limits);
+    let encoder = Encoder::sharing(problem, objective, wish, limits, &stop, graphs)?;
+    if encoder.states.is_arithmetic() && config.solver == Spec::Builtin {
+        return Err(needs_arithmetic(&encoder));
+    }
+    let mut oracle = Oracle::new(config);
+    let mut notes = Vec::new();
+    let empty = no_dead_ends(&encoder, &mut oracle).and_then(|()| without_paths(&encoder, &mut oracle));
+    let decision = match empty {
+        Err(stop) => Decision::stopped(&encoder, config, stop),
+        Ok(None) => Decision::of(&encoder, config, &mut oracle),
+        Ok(Some(path)) => {
+            let var = &objective.paths[path];
+            let system = problem.systems[var.system].name.clone();
+            notes.push(Note::NoPaths { system, path: var.name.clone() });
+            let decided = decided(objective, var.quantifier);
+            let encoder = Encoder::sharing(problem, &decided, wish, limits, &stop, graphs)?;
+            Decision::of(&encoder, config, &mut oracle)
+        }
+    };
+    let total = start.elapsed().as_secs_f64();
+    let mut account = oracle.into_account();
+    let end = End::of(&encoder, config, decision.found, &account)?;
+    notes.append(&mut account.notes);
+    notes.extend(end.notes);
+    let horizons = hyperplan_horizon::horizons(objective);
+    Ok(Outcome {
+        verdict: end.verdict,
+        reason: end.reason,
+        horizons: horizons.iter_enumerated().map(|(p, h)| h.steps.map(|_| encoder.task.horizon(p))).collect(),
+        witness: end.witness,
+        verified: end.verified,
+        solver: account.solver,
+        quantifiers: decision.quantifiers,
+        because: decision.because,
+        states: encoder.states,
+        iterations: decision.rounds,
+        size: account.largest,
+        seconds: Seconds {
+            encode: (total - account.solving).max(0.0),
+            solve: account.solving,
+            verify: end.verifying,
+        },
+        notes,
+    })
+}
+
+/// The embedded solver knows bits only.
+fn needs_arithmetic(encoder: &Encoder<'_>) -> Error {
+    let systems = encoder.objective.paths.iter().map(|path| &encoder.problem.systems[path.system]);
+    let system = systems.into_iter().find(|system| !system.is_finite()).map(|system| system.name.clone());
+    Unsupported::Arithmetic { system, states: encoder.states }.into()
+}
+
+/// How a search ends: with a verdict and its witness.
+struct End {
+    verdict: Verdict,
+    reason: Option<Reason>,
+    witness: Option<Strategy>,
+    verified: Option<Verified>,
+    /// Seconds spent on the check of the witness.
+    verifying: f64,
+    notes: Vec<Note>,
+}
+
+impl End {
+    fn undecided(reason: Reason) -> End {
+        End {
+            verdict: Verdict::Unknown,
+            reason: Some(reason),
+            witness: None,
+            verified: None,
+            verifying: 0.0,
+            notes: Vec::new(),
+        }
+    }
+
+    /// The verdict that follows from what was found, once the witness is checked. What nobody could check is no
+    /// answer.
+    fn of(
+        encoder: &Encoder<'_>,
+        config: &Config,
+        found: Result<Option<Assignment>, Stop>,
+        account: &Account,
+    ) -> Result<End, Error> {
+        let found = match found {
+            Ok(found) => found,
+            Err(Stop::Unknown(reason)) => return Ok(End::undecided(reason)),
+            Err(Stop::Error(Error::Encode(encode::Error::Interrupted))) => {
+                return Ok(End::undecided(config.deadline.reason().into()));
+            }
+            Err(Stop::Error(error)) => return Err(error),
+        };
+        let realizable = found.is_some() == is_existential(encoder.objective);
+        let mut end = End {
+            verdict: if realizable { Verdict::Realizable } else { Verdict::Unrealizable },
+            reason: None,
+            notes: found.as_ref().map_or_else(Vec::new, |known| picked_outcomes(encoder, known)),
+            witness: found.map(|known| strategy(encoder, &known)),
+            verified: None,
+            verifying: 0.0,
+        };
+        let Some(strategy) = end.witness.as_ref().filter(|_| config.verify) else { return Ok(end) };
+        let start = Instant::now();
+        let verified = confirm(encoder, config, strategy, account);
+        end.verifying = start.elapsed().as_secs_f64();
+        match verified {
+            Ok(verified) => Ok(End { verified: Some(verified), ..end }),
+            Err(Stop::Error(error)) => Err(error),
+            Err(Stop::Unknown(reason)) => {
+                let reason = Reason::Unverified(Box::new(reason));
+                Ok(End { verifying: end.verifying, notes: end.notes, ..End::undecided(reason) })
+            }
+        }
+    }
+}
+
+fn strategy(encoder: &Encoder<'_>, known: &Assignment) -> Strategy {
+    let objective = encoder.objective;
+    let trace = |path: PathId| known[usize::from(path)].as_ref().map(|known| known.trace(path));
+    Strategy { traces: objective.leading_block().into_iter().filter_map(trace).collect() }
+}
+
+/// Says of which paths of a strategy the actions might have had other outcomes.
+fn picked_outcomes(encoder: &Encoder<'_>, known: &Assignment) -> Vec<Note> {
+    let objective = encoder.objective;
+    if !is_existential(objective) {
+        return Vec::new();
+    }
+    let picks = |path: &PathId| {
+        known[usize::from(*path)].as_ref().is_some_and(|known| encoder.writer.picks_outcomes(*path, known))
+    };
+    let note = |path: PathId| Note::PicksOutcomes { path: objective.paths[path].name.clone() };
+    objective.leading_block().into_iter().filter(picks).map(note).collect()
+}
