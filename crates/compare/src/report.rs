@@ -126,7 +126,9 @@ fn markdown(sheets: &[table::Sheet]) -> String {
 fn latex(sheets: &[table::Sheet]) -> String {
     let tables: Vec<String> = sheets
         .iter()
-        .map(|sheet| format!("% {}\n{}", sheet.caption.replace(['\n', '\r'], " "), table::latex(sheet)))
+        .map(|sheet| {
+            format!("% {}\n{}", sheet.caption.replace(['\n', '\r'], " "), crate::latex::latex(sheet))
+        })
         .collect();
     let packages = sheets.iter().map(latex::packages).max_by_key(|packages| packages.len());
     format!("% \\usepackage{{{}}}\n{}", packages.unwrap_or("booktabs"), tables.join("\n"))

@@ -10,9 +10,6 @@ use crate::score::{Score, Scores, scores};
 use crate::text::one_line;
 use crate::{Answer, Record, Status};
 
-pub use crate::latex::latex;
-pub use crate::terminal::terminal;
-
 /// Names of columns and the rows below.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sheet {

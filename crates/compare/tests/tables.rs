@@ -6,8 +6,9 @@ use std::path::Path;
 use std::{env, fs};
 
 use hyperplan_compare::contest::Contest;
+use hyperplan_compare::latex::latex;
 use hyperplan_compare::report::write_all;
-use hyperplan_compare::table::{Sheet, latex, sheets};
+use hyperplan_compare::table::{Sheet, sheets};
 use hyperplan_compare::{Record, Status, summary};
 use sample::{run, sample};
 

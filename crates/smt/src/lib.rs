@@ -5,6 +5,7 @@
 //! solver bit by bit. [`read_script`] reads one. [`first_violated`] evaluates a script under a [`Model`]. Nothing here
 //! recurses on the depth of terms, and shared terms are printed once.
 
+mod apply;
 mod eval;
 mod features;
 mod lexer;
@@ -20,7 +21,6 @@ mod write;
 pub use eval::{Evaluation, ModelCheck, Verdict, check_model, check_partial_model, first_violated};
 pub use features::{Features, logic};
 pub use lexer::{Context, Token, Tokens, parts, tokens};
-pub use name::symbol_text;
 pub use rational::Rational;
 pub use read::{Benchmark, Origin, ReadError, read_script, read_value};
 pub use script::{Script, Section};
@@ -28,6 +28,6 @@ pub use term::{Enumeration, Op, Sort, Stem, Term};
 pub use terms::{Terms, View};
 pub use value::{Model, Value};
 pub use write::{
-    Ask, Header, Printer, Status, WriteOptions, term_text, value_text, write_comment, write_header,
-    write_script,
+    Ask, Header, Printer, Status, WriteOptions, symbol_text, term_text, value_text, write_comment,
+    write_header, write_script,
 };

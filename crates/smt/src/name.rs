@@ -10,9 +10,6 @@
 use std::fmt::Write as _;
 use std::io;
 
-use crate::term::{Op, Sort, Term};
-use crate::terms::{Terms, View};
-
 /// A stem as it is written, without time and quotes.
 pub(crate) struct Mangled {
     /// With the `@` that a time follows, or that marks a word.
@@ -57,8 +54,34 @@ impl Mangled {
 
     /// Writes it as a name that has no time: of a sort or a constructor.
     pub(crate) fn write(&self, w: &mut impl io::Write) -> io::Result<()> {
-        let quote = if self.quoted { "|" } else { "" };
-        write!(w, "{quote}{}{quote}", self.timeless())
+        self.write_at(w, false, None)
+    }
+
+    /// Writes the name of a symbol, or of a bound variable, at a time perhaps.
+    #[inline]
+    pub(crate) fn write_at(
+        &self,
+        w: &mut impl io::Write,
+        is_bound: bool,
+        time: Option<u32>,
+    ) -> io::Result<()> {
+        if self.quoted {
+            w.write_all(b"|")?;
+        }
+        if is_bound {
+            w.write_all(b"?")?;
+        }
+        match time {
+            Some(time) => {
+                w.write_all(self.text.as_bytes())?;
+                write_number(w, time.into())?;
+            }
+            None => w.write_all(self.timeless().as_bytes())?,
+        }
+        if self.quoted {
+            w.write_all(b"|")?;
+        }
+        Ok(())
     }
 
     /// The text where there is no time.
@@ -148,59 +171,6 @@ fn is_word(text: &str) -> bool {
         || PREFIXES.iter().any(|prefix| text.starts_with(prefix))
 }
 
-/// A symbol or bound variable of an arena, for printing.
-pub(crate) struct SymbolName<'a> {
-    terms: &'a Terms,
-    symbol: Term,
-}
-
-impl<'a> SymbolName<'a> {
-    pub(crate) fn new(terms: &'a Terms, symbol: Term) -> Self {
-        SymbolName { terms, symbol }
-    }
-
-    #[inline]
-    pub(crate) fn write(&self, w: &mut impl io::Write) -> io::Result<()> {
-        let (stem, time) = match self.terms.view(self.symbol) {
-            View::Symbol(stem, time) | View::Bound(stem, time) => (stem, time),
-            _ => return Err(io::Error::new(io::ErrorKind::InvalidInput, "not a symbol")),
-        };
-        let name = self.terms.mangled(stem);
-        if name.quoted {
-            w.write_all(b"|")?;
-        }
-        if self.terms.op(self.symbol) == Op::Bound {
-            w.write_all(b"?")?;
-        }
-        match time {
-            Some(time) => {
-                w.write_all(name.text.as_bytes())?;
-                write_number(w, time.into())?;
-            }
-            None => w.write_all(name.timeless().as_bytes())?,
-        }
-        if name.quoted {
-            w.write_all(b"|")?;
-        }
-        Ok(())
-    }
-}
-
-/// A sort of an arena, for printing.
-pub(crate) struct SortName<'a> {
-    pub(crate) terms: &'a Terms,
-    pub(crate) sort: Sort,
-}
-
-impl SortName<'_> {
-    pub(crate) fn write(&self, w: &mut impl io::Write) -> io::Result<()> {
-        match self.sort {
-            Sort::Enum(enumeration) => self.terms.enumeration_name(enumeration).write(w),
-            sort => write!(w, "{sort}"),
-        }
-    }
-}
-
 /// A decimal number, without the formatting machinery: the writer writes millions of them.
 #[inline]
 pub(crate) fn write_number(w: &mut impl io::Write, mut number: u64) -> io::Result<()> {
@@ -218,13 +188,4 @@ pub(crate) fn write_number(w: &mut impl io::Write, mut number: u64) -> io::Resul
         }
     }
     w.write_all(&digits[at..])
-}
-
-/// How a declared symbol is written, quotes included.
-#[must_use]
-pub fn symbol_text(terms: &Terms, symbol: Term) -> String {
-    let mut text = Vec::new();
-    // Writing to a vector cannot fail, and what is no symbol has no name.
-    let _ = SymbolName::new(terms, symbol).write(&mut text);
-    String::from_utf8_lossy(&text).into_owned()
 }

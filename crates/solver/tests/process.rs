@@ -106,8 +106,10 @@ fn a_crash_tells_the_last_words_and_the_status() {
 
 #[test]
 fn errors_are_reported_even_if_an_answer_follows() {
-    let error =
-        check("echo '(error \"line 3: no (such) thing\")'; echo sat; sleep 300").expect_err("an error");
+    // Once it was asked: an answer before that is another fault.
+    let wait = "grep -m1 check-sat > /dev/null";
+    let error = check(&format!("{wait}; echo '(error \"line 3: no (such) thing\")'; echo sat; sleep 300"))
+        .expect_err("an error");
     assert!(
         matches!(&error, Error::Reported { message, .. } if message == "line 3: no (such) thing"),
         "{error}"

@@ -1,7 +1,7 @@
 //! Arithmetic, as far as it is linear.
 
+use super::Reader;
 use super::Trouble;
-use super::commands::Reader;
 use super::operators::{Arith, Compare, arity, chain};
 use crate::rational::Rational;
 use crate::term::{Sort, Term};

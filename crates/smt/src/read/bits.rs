@@ -1,7 +1,7 @@
 //! Bit-vectors. What terms have no operator for is put together from what they have.
 
+use super::Reader;
 use super::Trouble;
-use super::commands::Reader;
 use super::operators::{Bits, Compare, Operator, arity, chain};
 use crate::term::{Sort, Term};
 use crate::terms::Terms;

@@ -1,65 +1,12 @@
 //! Commands.
 
-use rustc_hash::FxHashMap;
-
 use super::expand::Macro;
-use super::names::{Meaning, Names};
-use super::{Benchmark, Origin, Trouble, newlines, shown};
-use crate::lexer::{Token, Tokens, tokens};
-use crate::script::Script;
+use super::names::Meaning;
+use super::{Benchmark, Origin, Reader, Trouble, newlines, shown};
+use crate::lexer::Token;
 use crate::term::{Sort, Term};
-use crate::terms::Terms;
-
-/// How many terms there may be beyond one for each byte of the text: what macros expand to can be exponential.
-const EXPANSION: usize = 1 << 23;
-
-/// What has been read so far.
-pub(super) struct Reader<'t> {
-    pub(super) tokens: Tokens<'t>,
-    pub(super) names: Names<'t>,
-    pub(super) sorts: FxHashMap<&'t str, Sort>,
-    pub(super) macros: Vec<Macro>,
-    script: Script,
-    symbols: Vec<Term>,
-    origins: Vec<Origin>,
-    assertions: usize,
-    /// Whether the check has come.
-    checked: bool,
-    /// How many variables were bound.
-    variables: u32,
-    /// How much of the bodies of macros was looked at.
-    pub(super) expanded: usize,
-    /// A place and its line.
-    line: (usize, usize),
-}
 
 impl<'t> Reader<'t> {
-    pub(super) fn new(text: &'t str) -> Self {
-        let sorts = [("Bool", Sort::Bool), ("Int", Sort::Int), ("Real", Sort::Real)];
-        Reader {
-            tokens: tokens(text),
-            names: Names::default(),
-            sorts: sorts.into_iter().collect(),
-            macros: Vec::new(),
-            script: Script::new(),
-            symbols: Vec::new(),
-            origins: Vec::new(),
-            assertions: 0,
-            checked: false,
-            variables: 0,
-            expanded: 0,
-            line: (0, 1),
-        }
-    }
-
-    pub(super) fn terms(&mut self) -> &mut Terms {
-        &mut self.script.terms
-    }
-
-    pub(super) fn sort_of(&self, t: Term) -> Sort {
-        self.script.terms.sort(t)
-    }
-
     /// Reads all of it.
     pub(super) fn read(mut self) -> Result<Benchmark, Trouble> {
         while let Some((at, token)) = self.next()? {
@@ -246,15 +193,6 @@ impl<'t> Reader<'t> {
         if self.script.len() > before {
             self.line = (at, self.line.1 + newlines(&self.tokens.text()[self.line.0..at]));
             self.origins.push(Origin { number: self.assertions, line: self.line.1 });
-        }
-        Ok(())
-    }
-
-    /// That there is room for so many more terms.
-    pub(super) fn check_room(&self, at: usize, more: usize) -> Result<(), Trouble> {
-        let limit = self.tokens.text().len() + EXPANSION;
-        if self.script.terms.len() + more > limit || self.expanded > limit {
-            return Err(Trouble::unsupported(at, format!("what expands to more than {limit} terms")));
         }
         Ok(())
     }

@@ -2,8 +2,8 @@
 
 use rustc_hash::FxHashMap;
 
+use super::Reader;
 use super::Trouble;
-use super::commands::Reader;
 use crate::term::{Op, Sort, Term};
 use crate::terms::{Terms, View};
 use crate::value::Value;

@@ -13,8 +13,14 @@ mod sorts;
 mod terms;
 mod value;
 
+use rustc_hash::FxHashMap;
+
+use crate::lexer::{Tokens, tokens};
 use crate::script::Script;
-use crate::term::Term;
+use crate::term::{Sort, Term};
+use crate::terms::Terms;
+use expand::Macro;
+use names::Names;
 
 pub use value::read_value;
 
@@ -75,7 +81,67 @@ pub enum ReadError {
 /// # Errors
 /// [`ReadError`], at the first place that cannot be read.
 pub fn read_script(text: &str) -> Result<Benchmark, ReadError> {
-    commands::Reader::new(text).read().map_err(|trouble| trouble.placed(text))
+    Reader::new(text).read().map_err(|trouble| trouble.placed(text))
+}
+
+/// How many terms there may be beyond one for each byte of the text: what macros expand to can be exponential.
+const EXPANSION: usize = 1 << 23;
+
+/// What has been read so far.
+struct Reader<'t> {
+    tokens: Tokens<'t>,
+    names: Names<'t>,
+    sorts: FxHashMap<&'t str, Sort>,
+    macros: Vec<Macro>,
+    script: Script,
+    symbols: Vec<Term>,
+    origins: Vec<Origin>,
+    assertions: usize,
+    /// Whether the check has come.
+    checked: bool,
+    /// How many variables were bound.
+    variables: u32,
+    /// How much of the bodies of macros was looked at.
+    expanded: usize,
+    /// A place and its line.
+    line: (usize, usize),
+}
+
+impl<'t> Reader<'t> {
+    fn new(text: &'t str) -> Self {
+        let sorts = [("Bool", Sort::Bool), ("Int", Sort::Int), ("Real", Sort::Real)];
+        Reader {
+            tokens: tokens(text),
+            names: Names::default(),
+            sorts: sorts.into_iter().collect(),
+            macros: Vec::new(),
+            script: Script::new(),
+            symbols: Vec::new(),
+            origins: Vec::new(),
+            assertions: 0,
+            checked: false,
+            variables: 0,
+            expanded: 0,
+            line: (0, 1),
+        }
+    }
+
+    fn terms(&mut self) -> &mut Terms {
+        &mut self.script.terms
+    }
+
+    fn sort_of(&self, t: Term) -> Sort {
+        self.script.terms.sort(t)
+    }
+
+    /// That there is room for so many more terms.
+    fn check_room(&self, at: usize, more: usize) -> Result<(), Trouble> {
+        let limit = self.tokens.text().len() + EXPANSION;
+        if self.script.terms.len() + more > limit || self.expanded > limit {
+            return Err(Trouble::unsupported(at, format!("what expands to more than {limit} terms")));
+        }
+        Ok(())
+    }
 }
 
 /// A [`ReadError`] whose place is not counted out yet.

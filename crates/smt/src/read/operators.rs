@@ -1,7 +1,7 @@
 //! Functions of the theories, applied.
 
+use super::Reader;
 use super::Trouble;
-use super::commands::Reader;
 use crate::term::{Sort, Term};
 use crate::terms::Terms;
 

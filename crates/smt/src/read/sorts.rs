@@ -1,6 +1,6 @@
 //! Sorts, and small pieces of syntax.
 
-use super::commands::Reader;
+use super::Reader;
 use super::{Trouble, shown};
 use crate::lexer::{Context, Token};
 use crate::name::is_reserved;

@@ -1,6 +1,6 @@
 //! Terms, on a stack of what has begun.
 
-use super::commands::Reader;
+use super::Reader;
 use super::names::Meaning;
 use super::operators::Operator;
 use super::value::{decimal, vector};

@@ -104,7 +104,7 @@ impl Terms {
         let mut summands = Vec::with_capacity(ts.len() + 1);
         for &t in ts {
             self.arith_checked(sort, t, t);
-            let folded = self.value(t).and_then(|v| crate::eval::apply(Op::Add, sort, &[constant, v], &[]));
+            let folded = self.value(t).and_then(|v| crate::apply::apply(Op::Add, sort, &[constant, v], &[]));
             match folded {
                 Some(sum) => constant = sum,
                 None => summands.push(t),

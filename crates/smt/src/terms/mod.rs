@@ -280,7 +280,7 @@ impl Terms {
         for &t in args {
             values.push(self.value(t)?);
         }
-        let value = crate::eval::apply(op, sort, &values, numbers)?;
+        let value = crate::apply::apply(op, sort, &values, numbers)?;
         Some(self.constant(value))
     }
 

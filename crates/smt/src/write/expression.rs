@@ -5,8 +5,9 @@ use std::cell::RefCell;
 use std::io;
 
 use super::free::Free;
+use super::name::{SortName, SymbolName};
 use super::node_set::NodeSet;
-use crate::name::{SortName, SymbolName, write_number};
+use crate::name::write_number;
 use crate::term::{Op, Term};
 use crate::terms::{Terms, View};
 use crate::value::Value;

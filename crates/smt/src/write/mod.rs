@@ -5,6 +5,7 @@
 
 mod expression;
 mod free;
+mod name;
 mod node_set;
 mod printer;
 mod rsmt2;
@@ -19,6 +20,7 @@ use crate::term::Term;
 use crate::terms::Terms;
 use crate::value::Value;
 
+pub use name::symbol_text;
 pub use printer::Printer;
 
 /// The expected answer, for `:status`.

@@ -6,10 +6,10 @@ use std::io;
 
 use super::expression::{Expression, Mark, Scratch, SharedName};
 use super::free::Free;
+use super::name::{SortName, SymbolName};
 use super::node_set::NodeSet;
 use super::rsmt2;
 use crate::features::Features;
-use crate::name::{SortName, SymbolName};
 use crate::term::{Enumeration, Op, Sort, Term};
 use crate::terms::Terms;
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -63,7 +63,7 @@ struct Entry {
 
 impl Default for Catalog {
     fn default() -> Self {
-        Catalog { profiles: super::profile::profiles().to_vec(), files: Vec::new() }
+        Catalog { profiles: profiles().to_vec(), files: Vec::new() }
     }
 }
 
@@ -283,6 +283,29 @@ fn beside(origin: Option<&Path>, program: String) -> String {
         }
         _ => program,
     }
+}
+
+/// The solvers of hyperplan's own table.
+static KNOWN: LazyLock<Catalog> = LazyLock::new(Catalog::known);
+
+/// All profiles of hyperplan's own table.
+pub(crate) fn profiles() -> &'static [Arc<Profile>] {
+    KNOWN.profiles()
+}
+
+/// The profile of that name in hyperplan's own table.
+pub(crate) fn profile(name: &str) -> Option<&'static Arc<Profile>> {
+    KNOWN.profile(name)
+}
+
+/// The names of the solvers that take those quantifiers.
+pub(crate) fn that_take(quantifiers: Quantifiers) -> Vec<&'static str> {
+    names(|profile| profile.quantifiers >= quantifiers)
+}
+
+/// The names of the solvers of hyperplan's own table that fit.
+pub(super) fn names(fit: impl Fn(&Profile) -> bool) -> Vec<&'static str> {
+    profiles().iter().filter(|profile| fit(profile)).map(|profile| profile.name.as_str()).collect()
 }
 
 #[cfg(test)]

@@ -1,13 +1,10 @@
 //! The session of an external solver that is spoken to on its standard input.
 
-use std::sync::Arc;
-
 use hyperplan_smt::{Features, Op, Printer, Script, Term, Value};
 
 use super::exchange::{Exchange, REASON, VERSION};
 use super::facts::Facts;
-use super::one_shot::OneShot;
-use super::profile::{Assumptions, Profile};
+use super::profile::Assumptions;
 use super::program::Program;
 use crate::deadline::Deadline;
 use crate::error::{Error, Unknown};
@@ -17,32 +14,6 @@ use crate::session::{Answer, Identity, Options, Quantifiers, QuerySize, Session}
 const PIECE: usize = 1 << 16;
 /// How many symbols one `get-value` asks for.
 pub(super) const ASK: usize = 1000;
-
-/// A session with a solver that is known by name.
-pub(crate) fn open_profile(profile: &Arc<Profile>, options: &Options) -> Result<Box<dyn Session>, Error> {
-    Ok(session(Program::of_profile(profile, options)?, options))
-}
-
-/// A session with any command that reads SMT-LIB from its standard input or a file.
-pub(crate) fn open_command(line: &str, options: &Options) -> Result<Box<dyn Session>, Error> {
-    Ok(session(Program::of_command(line)?, options))
-}
-
-fn session(program: Program, options: &Options) -> Box<dyn Session> {
-    if program.takes_file() {
-        return Box::new(OneShot::new(program, options));
-    }
-    let options = options.clone();
-    let deadline = Deadline::never();
-    Box::new(Dialogue {
-        program,
-        options,
-        running: None,
-        deadline,
-        has_model: false,
-        size: QuerySize::default(),
-    })
-}
 
 impl Program {
     /// The logic is chosen by what is known now, and where more may follow, it leaves room.
@@ -72,7 +43,7 @@ impl Program {
 
 /// A dialogue with a process, which is started at the first check, and again after one that ended at
 /// a deadline, or by itself.
-struct Dialogue {
+pub(super) struct Dialogue {
     program: Program,
     options: Options,
     running: Option<Running>,
@@ -97,6 +68,11 @@ struct Running {
 }
 
 impl Dialogue {
+    pub(super) fn new(program: Program, options: &Options) -> Dialogue {
+        let (options, deadline) = (options.clone(), Deadline::never());
+        Dialogue { program, options, running: None, deadline, has_model: false, size: QuerySize::default() }
+    }
+
     fn start(&self) -> Result<Running, Error> {
         let exchange = Exchange::start(&self.program, &self.program.arguments, &self.options)?;
         let printer = Printer::new();

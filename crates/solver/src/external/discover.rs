@@ -1,12 +1,12 @@
 //! Which solvers this machine has.
 
-use std::env;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::thread;
 
-use super::catalog::Catalog;
+use super::catalog::{Catalog, profiles};
 use super::probe::{self, Ability};
-use super::profile::{Install, Profile, Theory, profiles};
+use super::profile::{Install, Profile, Theory};
+use super::program::locate;
 use super::version;
 
 /// A solver, found or not.
@@ -89,7 +89,7 @@ fn builtin() -> Option<Found> {
     let engine = crate::embedded::Engine::new(&Options::default()).ok()?;
     Some(Found {
         name: "builtin".to_owned(),
-        path: env::current_exe().ok(),
+        path: std::env::current_exe().ok(),
         version: Some(engine.identity().version),
         tried: Vec::new(),
         abilities: ["bit-vectors", "incremental"].map(str::to_owned).to_vec(),
@@ -103,44 +103,4 @@ fn builtin() -> Option<Found> {
 #[cfg(not(any(feature = "cadical", feature = "batsat")))]
 fn builtin() -> Option<Found> {
     None
-}
-
-/// Where the profile's program is, and where it was sought: the environment variable, else `PATH`.
-pub(super) fn locate(profile: &Profile) -> (Option<PathBuf>, Vec<String>) {
-    let variable = profile.variable();
-    if let Some(path) = env::var_os(&variable).filter(|path| !path.is_empty()) {
-        let path = PathBuf::from(path);
-        let tried = vec![format!("{variable}={}", path.display())];
-        return (is_program(&path).then_some(path), tried);
-    }
-    let (path, mut tried) = search(&profile.program);
-    tried.insert(0, format!("${variable}"));
-    (path, tried)
-}
-
-/// Where a program is: itself if it is a path, else in the directories of `PATH`.
-pub(super) fn search(program: &str) -> (Option<PathBuf>, Vec<String>) {
-    if program.contains('/') {
-        let path = PathBuf::from(program);
-        let there = if path.is_file() { ", which cannot be executed" } else { "" };
-        return (is_program(&path).then_some(path), vec![format!("{program}{there}")]);
-    }
-    let directories = env::var_os("PATH").unwrap_or_default();
-    let mut tried = Vec::new();
-    for directory in env::split_paths(&directories) {
-        let path = directory.join(program);
-        if is_program(&path) {
-            return (Some(path), tried);
-        }
-        let path = path.display().to_string();
-        if !tried.contains(&path) {
-            tried.push(path);
-        }
-    }
-    (None, tried)
-}
-
-fn is_program(path: &Path) -> bool {
-    use std::os::unix::fs::PermissionsExt as _;
-    path.metadata().is_ok_and(|data| data.is_file() && data.permissions().mode() & 0o111 != 0)
 }

@@ -2,7 +2,8 @@
 
 use hyperplan_smt::{Features, logic};
 
-use super::profile::{Profile, Theory, demand_theories, profile};
+use super::catalog::{names, profile};
+use super::profile::{Profile, Theory};
 use crate::error::Error;
 use crate::session::{Options, Quantifiers, Spec};
 
@@ -74,4 +75,23 @@ impl Facts {
         let smallest = logic(&Features { bitvec: features.bitvec || booleans && vectors, ..*features });
         Ok(self.logic.clone().unwrap_or_else(|| smallest.to_owned()))
     }
+}
+
+/// Refuses what a solver that has those theories cannot take, and names solvers that can.
+fn demand_theories(solver: &str, theories: Option<&[Theory]>, features: &Features) -> Result<(), Error> {
+    let Some(theories) = theories else { return Ok(()) };
+    let needed = [
+        (features.bitvec, Theory::BitVectors),
+        (features.int, Theory::Integers),
+        (features.real, Theory::Reals),
+        (features.datatypes, Theory::Datatypes),
+    ];
+    for (_, theory) in needed.into_iter().filter(|(needed, _)| *needed) {
+        if !theories.contains(&theory) {
+            let others = names(|profile| profile.takes(theory)).join(", ");
+            let what = format!("the {solver} solver has no {theory}: use one of {others}");
+            return Err(Error::Unsupported { what });
+        }
+    }
+    Ok(())
 }

@@ -16,16 +16,40 @@ mod standalone;
 mod version;
 mod watchdog;
 
-pub(crate) use catalog::split_list;
+use std::sync::Arc;
+
+use dialogue::Dialogue;
+use one_shot::OneShot;
+use program::Program;
+
+use crate::error::Error;
+use crate::session::{Options, Session};
+
 pub use catalog::{Catalog, ConfigError};
-pub(crate) use dialogue::{open_command, open_profile};
+pub(crate) use catalog::{profile, split_list, that_take};
 pub(crate) use discover::for_arithmetic;
 pub use discover::{Found, discover};
 pub use facts::Facts;
 pub use model::{PrintedModel, PrintedModelError};
 pub use process::end_with_parent;
 pub use profile::{Install, Profile};
-pub(crate) use profile::{profile, that_take};
 #[doc(hidden)]
 pub use reply::understand_output;
 pub use standalone::Standalone;
+
+/// A session with a solver that is known by name.
+pub(crate) fn open_profile(profile: &Arc<Profile>, options: &Options) -> Result<Box<dyn Session>, Error> {
+    Ok(session(Program::of_profile(profile, options)?, options))
+}
+
+/// A session with any command that reads SMT-LIB from its standard input or a file.
+pub(crate) fn open_command(line: &str, options: &Options) -> Result<Box<dyn Session>, Error> {
+    Ok(session(Program::of_command(line)?, options))
+}
+
+fn session(program: Program, options: &Options) -> Box<dyn Session> {
+    if program.takes_file() {
+        return Box::new(OneShot::new(program, options));
+    }
+    Box::new(Dialogue::new(program, options))
+}

@@ -2,13 +2,9 @@
 
 use std::fmt;
 use std::path::PathBuf;
-use std::sync::{Arc, LazyLock};
 
-use hyperplan_smt::Features;
 use serde::Deserialize;
 
-use super::catalog::Catalog;
-use crate::error::Error;
 use crate::session::Quantifiers;
 
 /// A solver that has a name here.
@@ -113,28 +109,6 @@ impl fmt::Display for Install {
     }
 }
 
-/// The solvers of hyperplan's own table.
-static KNOWN: LazyLock<Catalog> = LazyLock::new(Catalog::known);
-
-/// All profiles of hyperplan's own table.
-pub(crate) fn profiles() -> &'static [Arc<Profile>] {
-    KNOWN.profiles()
-}
-
-/// The profile of that name in hyperplan's own table.
-pub(crate) fn profile(name: &str) -> Option<&'static Arc<Profile>> {
-    KNOWN.profile(name)
-}
-
-/// The names of the solvers that take those quantifiers.
-pub(crate) fn that_take(quantifiers: Quantifiers) -> Vec<&'static str> {
-    names(|profile| profile.quantifiers >= quantifiers)
-}
-
-fn names(fit: impl Fn(&Profile) -> bool) -> Vec<&'static str> {
-    profiles().iter().filter(|profile| fit(profile)).map(|profile| profile.name.as_str()).collect()
-}
-
 impl Profile {
     /// What it is called.
     #[must_use]
@@ -157,27 +131,4 @@ impl Profile {
     pub(crate) fn takes(&self, theory: Theory) -> bool {
         self.theories.as_ref().is_none_or(|theories| theories.contains(&theory))
     }
-}
-
-/// Refuses what a solver that has those theories cannot take, and names solvers that can.
-pub(crate) fn demand_theories(
-    solver: &str,
-    theories: Option<&[Theory]>,
-    features: &Features,
-) -> Result<(), Error> {
-    let Some(theories) = theories else { return Ok(()) };
-    let needed = [
-        (features.bitvec, Theory::BitVectors),
-        (features.int, Theory::Integers),
-        (features.real, Theory::Reals),
-        (features.datatypes, Theory::Datatypes),
-    ];
-    for (_, theory) in needed.into_iter().filter(|(needed, _)| *needed) {
-        if !theories.contains(&theory) {
-            let others = names(|profile| profile.takes(theory)).join(", ");
-            let what = format!("the {solver} solver has no {theory}: use one of {others}");
-            return Err(Error::Unsupported { what });
-        }
-    }
-    Ok(())
 }

@@ -1,10 +1,11 @@
 //! What is run for a session.
 
+use std::env;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::discover::{locate, search};
-use super::profile::{FILE, Profile, profiles};
+use super::catalog::profiles;
+use super::profile::{FILE, Profile};
 use super::version::Version;
 use crate::error::Error;
 use crate::session::{Options, Quantifiers};
@@ -76,6 +77,46 @@ impl Program {
             || ["(set-option :print-success false)", "(set-option :produce-models true)"].map(str::to_owned);
         self.profile.as_ref().map_or_else(|| usual().to_vec(), |profile| profile.setup.clone())
     }
+}
+
+/// Where the profile's program is, and where it was sought: the environment variable, else `PATH`.
+pub(super) fn locate(profile: &Profile) -> (Option<PathBuf>, Vec<String>) {
+    let variable = profile.variable();
+    if let Some(path) = env::var_os(&variable).filter(|path| !path.is_empty()) {
+        let path = PathBuf::from(path);
+        let tried = vec![format!("{variable}={}", path.display())];
+        return (is_program(&path).then_some(path), tried);
+    }
+    let (path, mut tried) = search(&profile.program);
+    tried.insert(0, format!("${variable}"));
+    (path, tried)
+}
+
+/// Where a program is: itself if it is a path, else in the directories of `PATH`.
+pub(super) fn search(program: &str) -> (Option<PathBuf>, Vec<String>) {
+    if program.contains('/') {
+        let path = PathBuf::from(program);
+        let there = if path.is_file() { ", which cannot be executed" } else { "" };
+        return (is_program(&path).then_some(path), vec![format!("{program}{there}")]);
+    }
+    let directories = env::var_os("PATH").unwrap_or_default();
+    let mut tried = Vec::new();
+    for directory in env::split_paths(&directories) {
+        let path = directory.join(program);
+        if is_program(&path) {
+            return (Some(path), tried);
+        }
+        let path = path.display().to_string();
+        if !tried.contains(&path) {
+            tried.push(path);
+        }
+    }
+    (None, tried)
+}
+
+fn is_program(path: &Path) -> bool {
+    use std::os::unix::fs::PermissionsExt as _;
+    path.metadata().is_ok_and(|data| data.is_file() && data.permissions().mode() & 0o111 != 0)
 }
 
 /// The known solver that was probably meant: one slip in names of up to four letters, two in longer ones.

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use super::catalog::Catalog;
-use super::discover::locate;
 use super::profile::FILE;
 use super::program::Program;
+use super::program::locate;
 use super::version;
 use crate::error::Error;
 use crate::session::{Options, Spec};
