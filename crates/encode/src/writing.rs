@@ -26,7 +26,7 @@ pub(crate) fn all_of<'p, P>(paths: &'p TiVec<PathIx, P>, env: &Env) -> Vec<Optio
 }
 
 /// The path that inputs or a formula refer to: the planner names only paths that it has.
-pub(crate) fn at(env: &Env, path: PathId) -> PathIx {
+pub(crate) fn at<T: Copy>(env: &[Option<T>], path: PathId) -> T {
     env[usize::from(path)].expect("every path that is read was quantified before")
 }
 

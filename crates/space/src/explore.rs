@@ -76,9 +76,9 @@ impl Packing {
     }
 
     /// `None` where a value is outside its type.
-    fn pack(&self, row: &[i64]) -> Option<u128> {
+    fn pack(&self, codes: &[i64]) -> Option<u128> {
         let mut packed = 0u128;
-        for (&value, &(lo, n)) in row.iter().zip(&self.radix) {
+        for (&value, &(lo, n)) in codes.iter().zip(&self.radix) {
             let digit = u128::try_from(value.checked_sub(lo)?).ok().filter(|d| *d < n)?;
             packed = packed * n + digit;
         }
@@ -102,8 +102,8 @@ type Edges = Vec<(u32, StateIx)>;
 
 impl Explorer<'_> {
     /// The index of a state, new or known; `None` where it is outside the types.
-    fn intern(&mut self, row: &[i64]) -> Result<Option<StateIx>, TooLarge> {
-        let Some(packed) = self.packing.pack(row) else { return Ok(None) };
+    fn intern(&mut self, codes: &[i64]) -> Result<Option<StateIx>, TooLarge> {
+        let Some(packed) = self.packing.pack(codes) else { return Ok(None) };
         let next = self.index.len();
         if let Some(&known) = self.index.get(&packed) {
             return Ok(Some(known));
@@ -113,7 +113,7 @@ impl Explorer<'_> {
         }
         let id = next as StateIx;
         self.index.insert(packed, id);
-        self.codes.extend_from_slice(row);
+        self.codes.extend_from_slice(codes);
         Ok(Some(id))
     }
 
@@ -130,28 +130,28 @@ impl Explorer<'_> {
             return Ok(initial);
         }
         let types: Vec<(i64, i64)> = system.vars.iter().filter_map(|v| bounds(&v.ty)).collect();
-        let mut row: Vec<i64> = Vec::with_capacity(self.width);
+        let mut codes: Vec<i64> = Vec::with_capacity(self.width);
         let mut visited = 0usize;
-        // Depth-first over prefixes; `row` holds the current prefix.
+        // Depth-first over prefixes; `codes` holds the current prefix.
         loop {
-            if row.len() == self.width {
-                initial.extend(self.intern(&row)?);
+            if codes.len() == self.width {
+                initial.extend(self.intern(&codes)?);
             } else {
-                row.push(types[row.len()].0);
+                codes.push(types[codes.len()].0);
                 visited += 1;
-                if tests[row.len()].iter().all(|e| eval_in(system, e, &row) != 0) {
+                if tests[codes.len()].iter().all(|e| eval_in(system, e, &codes) != 0) {
                     continue;
                 }
             }
             loop {
-                let Some(last) = row.pop() else { return Ok(initial) };
-                if last < types[row.len()].1 {
-                    row.push(last + 1);
+                let Some(last) = codes.pop() else { return Ok(initial) };
+                if last < types[codes.len()].1 {
+                    codes.push(last + 1);
                     visited += 1;
                     if visited > self.budget.saturating_mul(16) {
                         return Err(TooLarge);
                     }
-                    if tests[row.len()].iter().all(|e| eval_in(system, e, &row) != 0) {
+                    if tests[codes.len()].iter().all(|e| eval_in(system, e, &codes) != 0) {
                         break;
                     }
                 }
@@ -166,9 +166,9 @@ impl Explorer<'_> {
         let mut found = Vec::new();
         let mut at = 0usize;
         while at < self.index.len() {
-            let row = self.codes[at * self.width..(at + 1) * self.width].to_vec();
+            let codes = self.codes[at * self.width..(at + 1) * self.width].to_vec();
             found.clear();
-            self.successors(&row, &mut found)?;
+            self.successors(&codes, &mut found)?;
             found.sort_unstable();
             found.dedup();
             edges.extend_from_slice(&found);
@@ -181,33 +181,33 @@ impl Explorer<'_> {
         Ok((starts, edges))
     }
 
-    fn successors(&mut self, row: &[i64], found: &mut Edges) -> Result<(), TooLarge> {
+    fn successors(&mut self, codes: &[i64], found: &mut Edges) -> Result<(), TooLarge> {
         let system = self.system;
-        if eval_in(system, &system.absorb, row) != 0 {
-            if let Some(here) = self.intern(row)? {
+        if eval_in(system, &system.absorb, codes) != 0 {
+            if let Some(here) = self.intern(codes)? {
                 found.extend((0..system.actions.len() as u32).map(|a| (a, here)));
             }
             return Ok(());
         }
         for clause in &system.clauses {
-            if eval_in(system, &clause.guard, row) == 0 {
+            if eval_in(system, &clause.guard, codes) == 0 {
                 continue;
             }
-            for next in outcomes(system, clause, row, self.budget)? {
+            for next in outcomes(system, clause, codes, self.budget)? {
                 if let Some(next) = self.intern(&next)? {
                     found.extend(action_positions(system, clause).map(|a| (a, next)));
                 }
             }
         }
-        self.listed(row, found)
+        self.listed(codes, found)
     }
 
     /// The transitions that the system lists one by one.
-    fn listed(&mut self, row: &[i64], found: &mut Edges) -> Result<(), TooLarge> {
+    fn listed(&mut self, codes: &[i64], found: &mut Edges) -> Result<(), TooLarge> {
         let Some(edges) = &self.system.edges else { return Ok(()) };
         let at = usize::from(edges.var);
-        let mut next = row.to_vec();
-        for edge in edges.of(u32::try_from(row[at]).unwrap_or(u32::MAX)) {
+        let mut next = codes.to_vec();
+        for edge in edges.of(u32::try_from(codes[at]).unwrap_or(u32::MAX)) {
             next[at] = i64::from(edge.to);
             if let (Some(next), Some(&action)) = (self.intern(&next)?, self.positions.get(&edge.action)) {
                 found.push((action, next));
@@ -217,16 +217,16 @@ impl Explorer<'_> {
     }
 }
 
-/// The rows that a clause's updates allow, in or out of range.
+/// The states that a clause's updates allow, in or out of range.
 pub(crate) fn outcomes(
     system: &System,
     clause: &Clause,
-    row: &[i64],
+    codes: &[i64],
     budget: usize,
 ) -> Result<Vec<Vec<i64>>, TooLarge> {
-    let mut all = vec![row.to_vec()];
+    let mut all = vec![codes.to_vec()];
     for (var, update) in &clause.updates {
-        let values = update_values(system, *var, update, row);
+        let values = update_values(system, *var, update, codes);
         if values.len().saturating_mul(all.len()) > budget {
             return Err(TooLarge);
         }
@@ -245,20 +245,20 @@ pub(crate) fn outcomes(
 }
 
 /// The least and greatest values that an update gives, whatever the variable's type.
-pub(crate) fn update_values_unclipped(system: &System, update: &Update, row: &[i64]) -> Vec<i64> {
+pub(crate) fn update_values_unclipped(system: &System, update: &Update, codes: &[i64]) -> Vec<i64> {
     match update {
-        Update::Assign(e) => vec![eval_in(system, e, row)],
-        Update::OneOf(es) => es.iter().map(|e| eval_in(system, e, row)).collect(),
-        Update::Within(lo, hi) => vec![eval_in(system, lo, row), eval_in(system, hi, row)],
+        Update::Assign(e) => vec![eval_in(system, e, codes)],
+        Update::OneOf(es) => es.iter().map(|e| eval_in(system, e, codes)).collect(),
+        Update::Within(lo, hi) => vec![eval_in(system, lo, codes), eval_in(system, hi, codes)],
     }
 }
 
 /// The values that an update allows; those outside the variable's type may be left out.
-fn update_values(system: &System, var: VarId, update: &Update, row: &[i64]) -> Vec<i64> {
+fn update_values(system: &System, var: VarId, update: &Update, codes: &[i64]) -> Vec<i64> {
     match update {
-        Update::Assign(_) | Update::OneOf(_) => update_values_unclipped(system, update, row),
+        Update::Assign(_) | Update::OneOf(_) => update_values_unclipped(system, update, codes),
         Update::Within(lo, hi) => {
-            let (lo, hi) = (eval_in(system, lo, row), eval_in(system, hi, row));
+            let (lo, hi) = (eval_in(system, lo, codes), eval_in(system, hi, codes));
             let (least, greatest) = bounds(&system.vars[var].ty).unwrap_or((lo, hi));
             (lo.max(least)..=hi.min(greatest)).collect()
         }

@@ -35,48 +35,48 @@ pub fn inspect(system: &System, graph: &Graph, stop: &dyn Fn() -> bool) -> Optio
         if state % STRIDE == 0 && stop() {
             return None;
         }
-        let row = graph.codes(state);
+        let codes = graph.codes(state);
         if graph.successors(state).is_empty() {
             let (count, _) = findings.dead_ends.get_or_insert((0, state));
             *count += 1;
         }
         for (at, seen) in seen.iter_mut().enumerate() {
-            *seen |= eval_in(system, &Expr::Leaf(Leaf::Label(LabelId::from(at))), row) != 0;
+            *seen |= eval_in(system, &Expr::Leaf(Leaf::Label(LabelId::from(at))), codes) != 0;
         }
-        if eval_in(system, &system.absorb, row) == 0 {
-            clauses(system, state, row, &mut findings);
+        if eval_in(system, &system.absorb, codes) == 0 {
+            clauses(system, state, codes, &mut findings);
         }
     }
     findings.unreachable = (0..seen.len()).filter(|&at| !seen[at]).map(LabelId::from).collect();
     Some(findings)
 }
 
-fn clauses(system: &System, state: StateIx, row: &[i64], findings: &mut Findings) {
+fn clauses(system: &System, state: StateIx, codes: &[i64], findings: &mut Findings) {
     let enabled: Vec<usize> = (0..system.clauses.len())
-        .filter(|&at| !system.clauses[at].generated && eval_in(system, &system.clauses[at].guard, row) != 0)
+        .filter(|&at| !system.clauses[at].generated && eval_in(system, &system.clauses[at].guard, codes) != 0)
         .collect();
     for (at, &first) in enabled.iter().enumerate() {
         for &second in &enabled[at + 1..] {
             let actions = &system.clauses[second].actions;
             let shared = system.clauses[first].actions.iter().any(|a| actions.contains(a));
             let known = || findings.overlaps.iter().any(|o| (o.0, o.1) == (first, second));
-            if shared && !known() && differ(system, first, second, row) {
+            if shared && !known() && differ(system, first, second, codes) {
                 findings.overlaps.push((first, second, state));
             }
         }
-        if !findings.added.iter().any(|a| a.0 == first) && adds(system, first, row) {
+        if !findings.added.iter().any(|a| a.0 == first) && adds(system, first, codes) {
             findings.added.push((first, state));
         }
-        if !findings.lost.iter().any(|l| l.0 == first) && leaves_range(system, first, row) {
+        if !findings.lost.iter().any(|l| l.0 == first) && leaves_range(system, first, codes) {
             findings.lost.push((first, state));
         }
     }
 }
 
 /// Whether both clauses have outcomes, and not the same.
-fn differ(system: &System, first: usize, second: usize, row: &[i64]) -> bool {
+fn differ(system: &System, first: usize, second: usize, codes: &[i64]) -> bool {
     let outcomes = |clause: usize| -> Option<Vec<Vec<i64>>> {
-        let mut all = outcomes(system, &system.clauses[clause], row, OUTCOMES).ok()?;
+        let mut all = outcomes(system, &system.clauses[clause], codes, OUTCOMES).ok()?;
         let inside = |next: &Vec<i64>| {
             let fits =
                 |(value, var): (&i64, &Var)| bounds(&var.ty).is_none_or(|(lo, hi)| (lo..=hi).contains(value));
@@ -94,24 +94,24 @@ fn differ(system: &System, first: usize, second: usize, row: &[i64]) -> bool {
 }
 
 /// Whether a clause gives one of its actions another outcome than the map or graph does.
-fn adds(system: &System, clause: usize, row: &[i64]) -> bool {
+fn adds(system: &System, clause: usize, codes: &[i64]) -> bool {
     let actions = &system.clauses[clause].actions;
     let moves = || {
         let moves = system.clauses.iter().enumerate().filter(|(_, c)| c.generated);
         moves
             .filter(|(_, c)| c.actions.iter().any(|a| actions.contains(a)))
-            .any(|(at, c)| eval_in(system, &c.guard, row) != 0 && !leaves_range(system, at, row))
+            .any(|(at, c)| eval_in(system, &c.guard, codes) != 0 && !leaves_range(system, at, codes))
     };
     let listed = system.edges.as_ref().is_some_and(|edges| {
-        let at = u32::try_from(row[usize::from(edges.var)]).unwrap_or(u32::MAX);
+        let at = u32::try_from(codes[usize::from(edges.var)]).unwrap_or(u32::MAX);
         edges.of(at).iter().any(|edge| actions.contains(&edge.action))
     });
     listed || moves()
 }
 
-fn leaves_range(system: &System, clause: usize, row: &[i64]) -> bool {
+fn leaves_range(system: &System, clause: usize, codes: &[i64]) -> bool {
     system.clauses[clause].updates.iter().any(|(var, update)| {
         let Some((lo, hi)) = bounds(&system.vars[*var].ty) else { return false };
-        update_values_unclipped(system, update, row).iter().any(|v| !(lo..=hi).contains(v))
+        update_values_unclipped(system, update, codes).iter().any(|v| !(lo..=hi).contains(v))
     })
 }

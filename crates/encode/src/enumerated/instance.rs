@@ -2,6 +2,7 @@
 
 use super::path::{EnumeratedPath, Layer, Step};
 use crate::names::Names;
+use crate::writing::at;
 use hyperplan_problem::PathId;
 use hyperplan_relevance::{Instance, Layers, Move, Start};
 use hyperplan_smt::{Script, Sort, Term};
@@ -178,9 +179,4 @@ impl Building<'_, '_> {
         self.script.clause(&clause);
         there
     }
-}
-
-/// The path that inputs refer to: the planner names only paths that it has.
-fn at<'a>(env: &[Option<&'a EnumeratedPath>], path: PathId) -> &'a EnumeratedPath {
-    env[usize::from(path)].expect("inputs refer to paths quantified before")
 }

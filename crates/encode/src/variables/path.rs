@@ -4,6 +4,7 @@
 use super::step::{InState, after, enabled, enabled_with, within};
 use crate::names::Names;
 use crate::value::{Val, choose, equal, known, member_of, same, translate, width};
+use crate::writing::at;
 use hyperplan_problem::{ActionId, PathId, Rational, State, System, Type, Value, VarId};
 use hyperplan_relevance::{Instance, Known, Move, Start};
 use hyperplan_smt::{self as smt, Model, Script, Sort, Term, Terms};
@@ -158,9 +159,8 @@ impl Builder<'_> {
         inputs: &Instance,
         env: &[Option<&VariablePath>],
     ) -> (VariablePath, Term) {
-        let at = |path: PathId| env[usize::from(path)].expect("inputs refer to paths quantified before");
         let first = match &inputs.start {
-            Start::Same(other) => at(*other).states[0].clone(),
+            Start::Same(other) => at(env, *other).states[0].clone(),
             Start::State(row) => Arc::new(constants(terms, row)),
         };
         let mut guards = vec![self.initial(terms, &first)];
@@ -174,8 +174,8 @@ impl Builder<'_> {
             let enabled = enabled_with(self.commands, terms, self.system(), &here, &values);
             let (actions, number) = match movement {
                 // Outcomes are told apart by the guards of clauses; see `prefer`.
-                Move::Same(other) => (at(other).steps[time].actions.clone(), 0),
-                Move::SameAction(other, number) => (at(other).steps[time].actions.clone(), number),
+                Move::Same(other) => (at(env, other).steps[time].actions.clone(), 0),
+                Move::SameAction(other, number) => (at(env, other).steps[time].actions.clone(), number),
                 Move::Act(action, number) => (vec![(action, Term::TRUE)], number),
             };
             let commands = self.prefer(terms, &enabled, &actions, number);
