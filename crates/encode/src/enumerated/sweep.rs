@@ -74,7 +74,7 @@ pub(super) fn sweep(
         runs.settle(script, time, std::mem::take(&mut ways), &mut frontier);
         runs.avoid_losing_moves(script, time, &frontier);
         total += frontier.len();
-        if total > sweep.task.limits.swept || runs.residuals.len() > sweep.task.limits.residuals {
+        if total > sweep.task.limits.swept || runs.residuals.count() > sweep.task.limits.residuals {
             return None;
         }
         let residuals: Vec<Residual> = frontier.keys().map(|pair| pair.0).collect();

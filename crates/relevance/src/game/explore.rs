@@ -159,7 +159,7 @@ pub(super) fn stages(question: &Question<'_, 2>) -> Option<(Vec<Stage>, Residual
     for time in 0..explorer.exploration.product.horizon {
         task.go_on().ok()?;
         let next = explorer.advance(&mut stage, time + 1)?;
-        if explorer.exploration.product.residuals.len() > task.limits.residuals
+        if explorer.exploration.product.residuals.count() > task.limits.residuals
             || next.residuals() > MAX_RESIDUALS
         {
             return None;

@@ -204,7 +204,7 @@ impl<'a, const N: usize> Exploration<'a, N> {
         let mut total = now.len();
         for time in 1..=self.product.horizon {
             self.note(&now, time - 1);
-            if self.product.residuals.len() > self.product.question.arena.task.limits.residuals
+            if self.product.residuals.count() > self.product.question.arena.task.limits.residuals
                 && self.forget == u32::MAX
             {
                 self.forget = time;

@@ -87,7 +87,7 @@ impl Residuals {
     }
 
     /// Number of residuals made so far.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.shapes.len()
     }
 
