@@ -81,6 +81,12 @@ impl Reading<'_> {
             (Formula::WeakUntil(i, a, b), false) => {
                 self.release(i, a, b, false, t) && self.some(&from_now(i), a, false, t)
             }
+            (Formula::StrongRelease(i, a, b), true) => {
+                self.window(i, t).any(|j| self.holds(a, true, j) && (t..=j).all(|k| self.holds(b, true, k)))
+            }
+            (Formula::StrongRelease(i, a, b), false) => {
+                self.window(i, t).all(|j| self.holds(a, false, j) || (t..=j).any(|k| self.holds(b, false, k)))
+            }
         }
     }
 

@@ -150,6 +150,7 @@ impl<'a> Brute<'a> {
                 let from_now = i.map(|(_, hi)| (0, hi));
                 until(i, &|j| at(a, j), &|j| at(b, j)) || window(&from_now).all(|j| at(a, j))
             }
+            Formula::StrongRelease(i, a, b) => window(i).any(|j| at(a, j) && (t..=j).all(|k| at(b, k))),
         }
     }
 

@@ -171,6 +171,7 @@ pub enum Formula {
     Until(Interval, Box<Formula>, Box<Formula>),
     Release(Interval, Box<Formula>, Box<Formula>),
     WeakUntil(Interval, Box<Formula>, Box<Formula>),
+    StrongRelease(Interval, Box<Formula>, Box<Formula>),
 }
 
 impl Formula {
@@ -189,7 +190,8 @@ impl Formula {
             | Formula::Iff(a, b)
             | Formula::Until(_, a, b)
             | Formula::Release(_, a, b)
-            | Formula::WeakUntil(_, a, b) => a.reads_actions() || b.reads_actions(),
+            | Formula::WeakUntil(_, a, b)
+            | Formula::StrongRelease(_, a, b) => a.reads_actions() || b.reads_actions(),
         }
     }
 }
@@ -382,6 +384,9 @@ impl Display for Shown<'_> {
             Formula::Release(i, a, b) => write!(f, "({} R{} {})", Shown(a, system), at(i), Shown(b, system)),
             Formula::WeakUntil(i, a, b) => {
                 write!(f, "({} W{} {})", Shown(a, system), at(i), Shown(b, system))
+            }
+            Formula::StrongRelease(i, a, b) => {
+                write!(f, "({} M{} {})", Shown(a, system), at(i), Shown(b, system))
             }
         }
     }

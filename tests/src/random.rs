@@ -256,7 +256,7 @@ impl Formulas<'_> {
             return Formula::Atom(self.atom());
         }
         let temporal = look > 0 || self.within;
-        let kind = self.random.below(if temporal { 18 } else { 6 });
+        let kind = self.random.below(if temporal { 19 } else { 6 });
         match kind {
             0 => Formula::Not(self.sub(depth, look)),
             1 => Formula::And(self.subs(depth, look)),
@@ -277,7 +277,8 @@ impl Formulas<'_> {
             11 | 12 => Formula::Globally(interval, self.sub(depth, later)),
             13 | 14 => Formula::Until(interval, self.sub(depth, later), self.sub(depth, later)),
             15 | 16 => Formula::Release(interval, self.sub(depth, later), self.sub(depth, later)),
-            _ => Formula::WeakUntil(interval, self.sub(depth, later), self.sub(depth, later)),
+            17 => Formula::WeakUntil(interval, self.sub(depth, later), self.sub(depth, later)),
+            _ => Formula::StrongRelease(interval, self.sub(depth, later), self.sub(depth, later)),
         }
     }
 

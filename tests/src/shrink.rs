@@ -79,7 +79,8 @@ fn parts(formula: &mut Formula) -> Vec<&mut Formula> {
         | Formula::Iff(a, b)
         | Formula::Until(_, a, b)
         | Formula::Release(_, a, b)
-        | Formula::WeakUntil(_, a, b) => vec![a, b],
+        | Formula::WeakUntil(_, a, b)
+        | Formula::StrongRelease(_, a, b) => vec![a, b],
     }
 }
 
@@ -125,7 +126,8 @@ fn shorter(formula: &mut Formula) {
     | Formula::Globally(Some((lo, hi)), _)
     | Formula::Until(Some((lo, hi)), ..)
     | Formula::Release(Some((lo, hi)), ..)
-    | Formula::WeakUntil(Some((lo, hi)), ..) = formula
+    | Formula::WeakUntil(Some((lo, hi)), ..)
+    | Formula::StrongRelease(Some((lo, hi)), ..) = formula
     {
         *hi = (*hi).saturating_sub(1).max(*lo);
     }

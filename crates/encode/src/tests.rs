@@ -57,6 +57,7 @@ fn every_operator_unrolls_to_linearly_many_terms() {
         ("R", binary(BinaryOp::Release, 0)),
         ("R[7,_]", binary(BinaryOp::Release, 7)),
         ("W", binary(BinaryOp::WeakUntil, 0)),
+        ("M", binary(BinaryOp::StrongRelease, 0)),
     ];
     for (name, build) in &operators {
         for mode in [|_| Mode::Bounded, Mode::Within] {

@@ -45,6 +45,7 @@ fn left_operand_of_a_zero_until_is_not_read_and_weak_until_reads_it_all() {
         (BinaryOp::Release, 3, Some(2)),
         (BinaryOp::WeakUntil, 3, Some(3)),
         (BinaryOp::WeakUntil, 0, Some(0)),
+        (BinaryOp::StrongRelease, 3, Some(3)),
     ] {
         let o = objective(Mode::Bounded, |f| {
             let (q, p) = (atom(f, Q), atom(f, P));

@@ -298,7 +298,7 @@ pub enum ExprKind {
     If(Box<Expr>, Box<Expr>, Box<Expr>),
     /// `X N F G`
     Unary(UnaryOp, Option<Interval>, Box<Expr>),
-    /// `U R W`
+    /// `U R W M`
     Binary(BinaryOp, Option<Interval>, Box<Expr>, Box<Expr>),
 }
 
@@ -365,6 +365,8 @@ pub enum BinaryOp {
     Release,
     /// `W`
     WeakUntil,
+    /// `M`
+    StrongRelease,
 }
 
 /// `[a,b]`, or `[b]` for `[0,b]`.

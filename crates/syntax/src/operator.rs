@@ -229,6 +229,15 @@ pub const TABLE: &[Row] = &[
         ..Row::binary(BinaryOp::WeakUntil, "W", "f U[a,b] g, or f holds at every step up to b")
     },
     Row {
+        contextual: true,
+        means: Some("g U[a,b] (f & g)"),
+        ..Row::binary(
+            BinaryOp::StrongRelease,
+            "M",
+            "f and g hold at some step t from a to b from now, and g at every step before t, from now on",
+        )
+    },
+    Row {
         signs: &["∧"],
         slips: &["&&", "/\\", "and"],
         lookalikes: "＆",

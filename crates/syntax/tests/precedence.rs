@@ -29,7 +29,8 @@ fn logic_from_tight_to_loose() {
 #[test]
 fn associativity() {
     assert_eq!(formula("a -> b -> c"), "(a -> (b -> c))");
-    assert_eq!(formula("a U b R c W d"), "(a U (b R (c W d)))");
+    assert_eq!(formula("a U b R c W d M e"), "(a U (b R (c W (d M e))))");
+    assert_eq!(formula("M M M M[0,M] M | M"), "((M M (M M[0,M] M)) | M)");
     assert_eq!(formula("a <-> b <-> c"), "((a <-> b) <-> c)");
     assert_eq!(formula("a * b / c div d % e"), "((((a * b) / c) div d) % e)");
     assert_eq!(formula("a & b & c & d"), "(a & b & c & d)");

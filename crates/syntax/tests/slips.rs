@@ -103,6 +103,18 @@ fn names() {
     assert!(faults("system W { } objective U { forall p: W. true }").is_empty());
 }
 
+/// `M` is an operator between two operands only, and a name elsewhere.
+#[test]
+fn names_that_an_operator_shares() {
+    let text = "const M = 1;
+system M { state M: 0..M; action a; on a { M' = M; } label b = M == M; }
+define c(M) = b[M] M b[M];
+objective M { exists M: M. M[M] == M M M[M] == 2 & !M[M] == M M[M] b[M] & c(M) }";
+    assert_eq!(faults(text), [""; 0]);
+    let next_update = "system S { on a { x' = 1\n M' = 2; } }";
+    assert_eq!(faults(next_update), ["missing-semicolon: expected `;` after the update @ "]);
+}
+
 #[test]
 fn keywords() {
     assert_eq!(faults("systm S { }"), ["misspelt-keyword: unknown keyword `systm` @ systm"]);

@@ -22,6 +22,7 @@ pub(super) const MAP_PIECES: &[&str] = &[
     "S",
     "G",
     "W",
+    "M",
     "T",
     "O",
     "x",

@@ -54,7 +54,8 @@ impl Growth {
 /// The formula with other intervals; each is asked for once, in a fixed order.
 fn grown(formula: &Formula, interval: &mut dyn FnMut(Interval) -> Interval) -> Formula {
     use Formula::{
-        And, Atom, Finally, Globally, Iff, Implies, Next, Not, Or, Release, Until, WeakNext, WeakUntil,
+        And, Atom, Finally, Globally, Iff, Implies, Next, Not, Or, Release, StrongRelease, Until, WeakNext,
+        WeakUntil,
     };
     let mut sub = |f: &Formula| Box::new(grown(f, interval));
     match formula {
@@ -72,6 +73,9 @@ fn grown(formula: &Formula, interval: &mut dyn FnMut(Interval) -> Interval) -> F
         Release(i, a, b) => Release(interval(*i), Box::new(grown(a, interval)), Box::new(grown(b, interval))),
         WeakUntil(i, a, b) => {
             WeakUntil(interval(*i), Box::new(grown(a, interval)), Box::new(grown(b, interval)))
+        }
+        StrongRelease(i, a, b) => {
+            StrongRelease(interval(*i), Box::new(grown(a, interval)), Box::new(grown(b, interval)))
         }
     }
 }

@@ -51,7 +51,8 @@ fn pair(random: &mut Random) -> [Formula; 2] {
             8 => formula.unary(UnaryOp::Globally, i, x, span),
             9 => formula.binary(BinaryOp::Until, i, x, y, span),
             10 => formula.binary(BinaryOp::Release, i, x, y, span),
-            _ => formula.binary(BinaryOp::WeakUntil, i, x, y, span),
+            11 => formula.binary(BinaryOp::WeakUntil, i, x, y, span),
+            _ => formula.binary(BinaryOp::StrongRelease, i, x, y, span),
         });
         operands.push(id);
     }

@@ -36,6 +36,7 @@ impl Formula {
                 let always = Node::Release(Interval { lo: 0, ..i }, self.truth(false, span), f);
                 Node::Or(vec![self.push(Node::Until(i, f, g), span), self.push(always, span)])
             }
+            BinaryOp::StrongRelease => Node::Until(i, g, self.push(Node::And(vec![f, g]), span)),
         };
         let written = Written { operator: Operator::Binary(op), interval: i, operands: vec![f, g] };
         self.push_written(node, written, span)

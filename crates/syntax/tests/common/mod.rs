@@ -106,6 +106,7 @@ pub fn show(expr: &Expr) -> String {
                 BinaryOp::Until => "U",
                 BinaryOp::Release => "R",
                 BinaryOp::WeakUntil => "W",
+                BinaryOp::StrongRelease => "M",
             };
             format!("({} {op}{} {})", show(left), show_interval(interval), show(right))
         }

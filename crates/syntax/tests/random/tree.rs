@@ -41,6 +41,7 @@ const NAMES: &[&str] = &[
     "GF",
     "F_T",
     "E",
+    "M",
     "step",
 ];
 
@@ -209,13 +210,13 @@ fn kind(random: &mut Random, depth: u32) -> ExprKind {
         12 => ExprKind::Tuple(several(random, depth)),
         13 => ExprKind::If(a, b, Box::new(expr(random, depth))),
         14 => temporal(random, depth, a),
-        _ => ExprKind::Binary(
-            [BinaryOp::Until, BinaryOp::Release, BinaryOp::WeakUntil][random.below(3)],
-            interval(random, depth),
-            a,
-            b,
-        ),
+        _ => ExprKind::Binary(binary(random), interval(random, depth), a, b),
     }
+}
+
+fn binary(random: &mut Random) -> BinaryOp {
+    use BinaryOp::{Release, StrongRelease, Until, WeakUntil};
+    [Until, Release, WeakUntil, StrongRelease][random.below(4)]
 }
 
 fn temporal(random: &mut Random, depth: u32, a: Box<Expr>) -> ExprKind {

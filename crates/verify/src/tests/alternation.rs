@@ -60,7 +60,9 @@ impl Random {
             8 => F::Glob(lo, Some(hi), sub()),
             9 => F::Bin(BinaryOp::Until, lo, Some(hi), sub(), sub()),
             _ => {
-                let op = [BinaryOp::Release, BinaryOp::WeakUntil][self.below(2) as usize];
+                const OTHERS: [BinaryOp; 3] =
+                    [BinaryOp::Release, BinaryOp::WeakUntil, BinaryOp::StrongRelease];
+                let op = OTHERS[self.below(3) as usize];
                 let lhs = b(self.formula(paths, depth - 1, later));
                 F::Bin(op, lo, Some(hi), lhs, b(self.formula(paths, depth - 1, later)))
             }

@@ -92,6 +92,8 @@ impl Naive<'_> {
                 let (a, b) = (F::Not(a.clone()), F::Not(b.clone()));
                 !until(*lo, *hi, &a, &b)
             }
+            F::Bin(BinaryOp::StrongRelease, lo, hi, a, b) => window(*lo, *hi)
+                .any(|j| exists(j) && self.eval(a, paths, j) && (t..=j).all(|i| self.eval(b, paths, i))),
             F::Bin(BinaryOp::WeakUntil, lo, hi, a, b) => {
                 until(*lo, *hi, a, b) || window(0, *hi).all(|j| !exists(j) || self.eval(a, paths, j))
             }

@@ -54,6 +54,9 @@ fn bounded_operators_at_the_ends_of_their_intervals() {
     let weak = |lo, hi, a, c| bin(BinaryOp::WeakUntil, lo, hi, a, c);
     assert!(holds(&weak(0, 1, below(2), F::At(0, 9))) && !holds(&weak(0, 2, below(2), F::At(0, 9))));
     assert!(holds(&weak(0, 2, below(2), F::At(0, 2))) && !holds(&weak(3, 3, below(2), F::At(0, 3))));
+    let strong = |lo, hi, a, c| bin(BinaryOp::StrongRelease, lo, hi, a, c);
+    assert!(holds(&strong(0, 2, F::At(0, 1), below(2))) && !holds(&strong(0, 2, F::At(0, 2), below(2))));
+    assert!(!holds(&strong(2, 3, F::At(0, 1), below(2))) && !holds(&strong(0, 1, F::At(0, 2), below(3))));
     assert!(holds(&F::X(at(1))) && holds(&F::N(at(1))) && !holds(&F::N(at(0))));
 }
 
@@ -83,6 +86,8 @@ fn within_cuts_the_trace() {
     assert!(!holds(3, &release(0, None, contradiction(), not(F::At(0, 3)))));
     let weak = |k, a, c| holds(k, &bin(BinaryOp::WeakUntil, 0, None, a, c));
     assert!(weak(2, not(F::At(0, 3)), F::At(0, 9)) && !weak(3, not(F::At(0, 3)), F::At(0, 9)));
+    let strong = |k, a, c| holds(k, &bin(BinaryOp::StrongRelease, 0, None, a, c));
+    assert!(strong(2, F::At(0, 2), not(F::At(0, 3))) && !strong(1, F::At(0, 2), not(F::At(0, 3))));
 }
 
 #[test]
