@@ -20,6 +20,8 @@ use std::time::{Duration, Instant};
 
 #[path = "differential/minimize.rs"]
 mod minimize;
+#[path = "differential/quick.rs"]
+mod quick;
 #[path = "differential/semantics.rs"]
 mod semantics;
 #[path = "differential/unbounded.rs"]
@@ -110,8 +112,12 @@ fn path(system: &model::System, objective: &Problem, trace: &hyperplan_problem::
 
 #[test]
 fn the_checker_decides_as_brute_force_does() {
+    checker_decides(4000);
+}
+
+fn checker_decides(cases: u64) {
     let mut tally = Tally::default();
-    for seed in seeds(4000) {
+    for seed in seeds(cases) {
         let random = problem(&mut Random::new(seed));
         let brute = Brute::new(&random, usize::MAX / 8).expect("no limit");
         let expected = brute.verdict();
@@ -342,10 +348,14 @@ fn wrong(
 
 #[test]
 fn the_embedded_solver_answers_as_brute_force_does() {
+    embedded_solver_answers(1000);
+}
+
+fn embedded_solver_answers(cases: u64) {
     let ways = [Quantifiers::Auto, Quantifiers::Cegis, Quantifiers::Expand];
     let mut answers = Answers::default();
     let mut tally = Tally::default();
-    for seed in seeds(1000) {
+    for seed in seeds(cases) {
         let random = problem(&mut Random::new(seed));
         tally.add(Brute::new(&random, usize::MAX / 8).expect("no limit").verdict());
         answers.compare(&random, &Spec::Builtin, &ways, seed);

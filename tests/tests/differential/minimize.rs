@@ -105,10 +105,14 @@ fn least(problem: &Problem, growth: &Growth, quantifiers: Quantifiers) -> Least 
 
 #[test]
 fn the_least_value_is_that_of_brute_force() {
+    least_value(3000);
+}
+
+pub(super) fn least_value(cases: u64) {
     // By least value, and how often a value above the least is unrealizable.
     let mut found = [0u32; LAST as usize + 2];
     let mut falls = 0;
-    for seed in seeds(3000) {
+    for seed in seeds(cases) {
         let mut random = Random::new(seed);
         let problem = problem(&mut random);
         // Long paths under three quantifiers take minutes by counterexamples.

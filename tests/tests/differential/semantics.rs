@@ -38,8 +38,12 @@ fn what_holds_under_one_holds_under_the_next() {
 
 #[test]
 fn the_checker_reads_each_trace_as_defined() {
+    checker_reads(2000);
+}
+
+pub(super) fn checker_reads(cases: u64) {
     let mut tally = Tally::default();
-    for seed in seeds(2000) {
+    for seed in seeds(cases) {
         let mut random = Random::new(seed);
         let semantics = Semantics::ALL[random.below(4)];
         let problem = problem_with_semantics(&mut random, semantics);
@@ -69,10 +73,14 @@ fn the_checker_reads_each_trace_as_defined() {
 
 #[test]
 fn the_embedded_solver_finds_what_is_defined() {
+    embedded_solver_finds(400);
+}
+
+pub(super) fn embedded_solver_finds(cases: u64) {
     let ways = [Quantifiers::Auto, Quantifiers::Cegis, Quantifiers::Expand];
     let mut answers = Answers::default();
     let mut tally = Tally::default();
-    for seed in seeds(400) {
+    for seed in seeds(cases) {
         let mut random = Random::new(seed);
         let semantics = Semantics::ALL[random.below(4)];
         let problem = problem_with_semantics(&mut random, semantics);

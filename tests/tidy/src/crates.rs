@@ -34,7 +34,11 @@ fn real() -> BTreeMap<String, BTreeSet<String>> {
     let mut all = BTreeMap::new();
     for folder in crates().iter().filter(|folder| folder.starts_with("crates")) {
         let name = folder.file_name().expect("it has a name").to_string_lossy().into_owned();
-        let ours = named(&manifest(folder), "dependencies");
+        let manifest = manifest(folder);
+        if manifest["package"].get("publish").is_some_and(|publish| publish.as_bool() == Some(false)) {
+            continue;
+        }
+        let ours = named(&manifest, "dependencies");
         let ours =
             ours.iter().filter(|name| name.starts_with("hyperplan-")).map(|name| short(name).to_owned());
         all.insert(name, ours.collect());
