@@ -204,7 +204,7 @@ impl Way {
             for states in [States::Onehot, States::Enum, States::Bitvec, States::Int, States::Real] {
                 ways.push(Way { quantifiers, states: Some(states), limits: usual });
             }
-            if *solver == Spec::Builtin {
+            if solver.is_embedded() {
                 ways.push(Way { quantifiers, states: Some(States::Onehot), limits: unpruned });
                 ways.push(Way { quantifiers, states: None, limits: tight });
             }
@@ -258,7 +258,7 @@ impl Answers {
             let finite = typed.systems.iter().all(hyperplan_problem::System::is_finite);
             // The embedded solver has no numbers, and what is not finite is nothing else.
             let numbers = way.states.is_some_and(States::is_arithmetic);
-            if numbers && *solver == Spec::Builtin || !numbers && !finite {
+            if numbers && solver.is_embedded() || !numbers && !finite {
                 continue;
             }
             match self.judged(way, random, &brute, &typed, solver) {
@@ -346,6 +346,13 @@ fn wrong(
     }
 }
 
+/// The embedded solver with the best of its back ends, and now and then with the others too.
+fn embedded(seed: u64) -> impl Iterator<Item = Spec> {
+    let backends = Spec::backends();
+    let number = if seed.is_multiple_of(3) { backends.len() } else { 1 };
+    backends.into_iter().take(number)
+}
+
 #[test]
 fn the_embedded_solver_answers_as_brute_force_does() {
     embedded_solver_answers(1000);
@@ -358,9 +365,11 @@ fn embedded_solver_answers(cases: u64) {
     for seed in seeds(cases) {
         let random = problem(&mut Random::new(seed));
         tally.add(Brute::new(&random, usize::MAX / 8).expect("no limit").verdict());
-        answers.compare(&random, &Spec::Builtin, &ways, seed);
+        for solver in embedded(seed) {
+            answers.compare(&random, &solver, &ways, seed);
+        }
     }
-    answers.report("builtin");
+    answers.report("embedded");
     tally.assert_balanced();
 }
 
@@ -369,7 +378,7 @@ fn external_solvers_answer_as_brute_force_does() {
     let ways = [Quantifiers::Keep, Quantifiers::Cegis, Quantifiers::Expand];
     let required = std::env::var_os("HYPERPLAN_REQUIRE_SOLVERS").is_some_and(|value| value == "1");
     let mut found = discover();
-    found.retain(|solver| solver.name != "builtin");
+    found.retain(|solver| !solver.is_embedded);
     for solver in found {
         if solver.path.is_none() {
             // CI asks for these three.
@@ -391,7 +400,7 @@ fn external_solvers_answer_as_brute_force_does() {
 #[test]
 fn external_solvers_confirm_each_other() {
     let ways = [Quantifiers::Keep, Quantifiers::Cegis, Quantifiers::Expand];
-    let found = discover().into_iter().filter(|solver| solver.name != "builtin" && solver.path.is_some());
+    let found = discover().into_iter().filter(|solver| !solver.is_embedded && solver.path.is_some());
     let found: Vec<Spec> =
         found.map(|solver| Spec::from_str(&solver.name).expect("a solver that was discovered")).collect();
     for (solver, second) in found.iter().zip(found.iter().cycle().skip(1)) {

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 
+use hyperplan_solver::Spec;
 use serde::Serialize;
 
 use crate::contest::{
@@ -237,13 +238,10 @@ impl<'a> Instance<'a> {
                 })
         };
         let clears = wrong.iter().all(|run| contradicted(&run));
-        let external = wrong.iter().any(|run| run.record.solver != EMBEDDED);
+        let external = wrong.iter().any(|run| Spec::embedded(&run.record.solver).is_none());
         if clears && external { Fault::Solver } else { Fault::Ours }
     }
 }
-
-/// The solver that is part of hyperplan.
-const EMBEDDED: &str = "builtin";
 
 /// Who asks the same gets the same query, or is led by the answers of the solver alone. What was left to hyperplan counts as
 /// what became of it.

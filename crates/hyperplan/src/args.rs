@@ -157,8 +157,8 @@ pub(crate) struct Solve {
     pub(crate) output: Output,
     #[command(flatten)]
     pub(crate) encoding: Encoding,
-    /// `builtin`, `z3`, `cvc5`, `yices`, `bitwuzla`, a name in hyperplan.toml, or a command line; several, separated
-    /// by commas, race each other
+    /// `builtin`, `cadical`, `batsat`, `z3`, `cvc5`, `yices`, `bitwuzla`, a name in hyperplan.toml, or a command line;
+    /// several, separated by commas, race each other
     #[arg(long, value_name = "SOLVER", default_value = "builtin")]
     pub(crate) solver: String,
     /// Asks this solver too whether what the other finds impossible is so

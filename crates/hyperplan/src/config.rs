@@ -60,10 +60,12 @@ pub(crate) fn solver(text: &str) -> Outcome<Spec> {
 
 /// One solver, and those that race it.
 fn solvers(text: &str) -> Outcome<(Spec, Vec<Spec>)> {
-    if text.trim() == "builtin" {
-        return Ok((Spec::Builtin, Vec::new()));
-    }
-    let specs = configuration::catalog()?.specs(text).map_err(|e| Failure::input(format_args!("{e}")))?;
+    // What is built in reads no configuration.
+    let specs = match Spec::embedded(text.trim()) {
+        Some(embedded) => embedded.map(|spec| vec![spec]),
+        None => configuration::catalog()?.specs(text),
+    };
+    let specs = specs.map_err(|e| Failure::input(format_args!("{e}")))?;
     let mut specs = specs.into_iter();
     let first = specs.next().ok_or_else(|| Failure::input("the solver's name is empty"))?;
     Ok((first, specs.collect()))

@@ -171,7 +171,7 @@ fn has_external_solver() -> Result<bool, Failed> {
     let output = hyperplan(&["solvers".as_ref(), "--format".as_ref(), "json".as_ref()])?;
     for line in String::from_utf8(output.stdout)?.lines() {
         let solver: serde_json::Value = serde_json::from_str(line)?;
-        if solver["name"] != "builtin" && solver["path"].is_string() {
+        if solver["embedded"] == false && solver["path"].is_string() {
             return Ok(true);
         }
     }

@@ -141,7 +141,11 @@ fn plot_draws_the_bare_map() {
 fn solvers_lists_the_embedded_one() {
     let run = hyperplan(&["solvers"]);
     assert_eq!(run.status, 0, "{}", run.stderr);
-    assert!(run.stdout.contains("builtin"), "{}", run.stdout);
+    for name in ["builtin", "cadical", "batsat"] {
+        assert!(run.stdout.lines().any(|line| line.starts_with(&format!("{name} "))), "{}", run.stdout);
+    }
+    let missing = "not found\n             this build has no cadical: it takes the cargo feature cadical\n";
+    assert_eq!(run.stdout.contains(missing), cfg!(not(feature = "cadical")), "{}", run.stdout);
 }
 
 #[test]

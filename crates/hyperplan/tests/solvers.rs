@@ -98,6 +98,34 @@ fn bad_configuration_is_bad_input() {
     assert_eq!(run_in(project.path(), user.path(), &["solvers"]).status, 2);
     // The embedded solver has nothing to be configured.
     assert_eq!(solve_in(project.path(), user.path(), &[]).status, 0);
+    assert_eq!(solve_in(project.path(), user.path(), &["--solver", "batsat"]).status, 0);
+}
+
+#[test]
+fn back_ends_can_be_named() {
+    let (project, user) = folders();
+    for name in ["builtin", "cadical", "batsat"] {
+        for quantifiers in ["auto", "cegis"] {
+            let options = ["--solver", name, "--seed", "3", "--quantifiers", quantifiers];
+            let run = solve_in(project.path(), user.path(), &options);
+            if name == "cadical" && cfg!(not(feature = "cadical")) {
+                assert_eq!((run.status, run.stdout.as_str()), (2, ""));
+                let words = "this build has no cadical: it takes the cargo feature cadical";
+                assert!(run.stderr.contains(words), "{}", run.stderr);
+                continue;
+            }
+            assert_eq!(run.status, 0, "{}", run.stderr);
+            let answer = &run.json()[0];
+            assert_eq!((&answer["solver"]["name"], &answer["verified"]), (&name.into(), &"by-search".into()));
+        }
+    }
+    let run = solve_in(project.path(), user.path(), &["--solver", "batsad"]);
+    assert_eq!(run.status, 4, "{}", run.stderr);
+    assert!(run.stderr.contains("did you mean batsat?"), "{}", run.stderr);
+    let race = if cfg!(feature = "cadical") { "batsat,cadical" } else { "batsat,builtin" };
+    assert_eq!(solve_in(project.path(), user.path(), &["--solver", race]).status, 0);
+    let run = solve_in(project.path(), user.path(), &["--solver", "batsat", "--quantifiers", "keep"]);
+    assert_eq!(run.status, 2, "{}", run.stderr);
 }
 
 #[test]

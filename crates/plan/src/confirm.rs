@@ -28,7 +28,7 @@ pub(crate) fn confirm(
             let what = defeat.describe(objective);
             // If our own encoding agrees with the checker, the solver said something wrong.
             Err(match defeated(encoder, config, strategy) {
-                Ok(true) if config.solver != Spec::Builtin => account.wrong_model(what),
+                Ok(true) if !config.solver.is_embedded() => account.wrong_model(what),
                 _ => Error::Bug(what),
             }
             .into())

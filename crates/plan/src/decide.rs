@@ -8,7 +8,6 @@ use crate::oracle::{Oracle, Stop};
 use crate::prepare::{is_existential, is_finite};
 use hyperplan_encode::{Encoder, Goal, Narrowing};
 use hyperplan_problem::PathId;
-use hyperplan_solver::Spec;
 
 /// Runs that are hardly longer than the shortest make small queries, so they are tried first; then longer ones, and
 /// then all, if there are others.
@@ -162,7 +161,7 @@ impl<'s, 'a> Search<'s, 'a> {
 
     /// Asks one query with its quantifiers, of a solver that takes them.
     fn keep(&self, oracle: &mut Oracle<'_>) -> Result<Option<Assignment>, Stop> {
-        if self.config.solver == Spec::Builtin {
+        if self.config.solver.is_embedded() {
             return Err(Error::from(Unsupported::KeptQuantifiers).into());
         }
         direct::keep(self.encoder, &self.blocks, self.want)?.solve(oracle, self.blocks.len())

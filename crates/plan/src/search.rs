@@ -9,7 +9,6 @@ use crate::oracle::{Account, Oracle, Stop};
 use crate::prepare::{decided, is_existential, no_dead_ends, without_paths};
 use hyperplan_encode::{self as encode, Encoder, Graphs};
 use hyperplan_problem::{Objective, PathId, Problem, Strategy};
-use hyperplan_solver::Spec;
 use std::time::Instant;
 
 /// Decides an objective with one solver; systems that were enumerated before are not enumerated again. Where the choice
@@ -41,7 +40,7 @@ fn attempt(
     let stop = || config.deadline.passed();
     let (wish, limits) = (config.states, config.limits);
     let encoder = Encoder::sharing(problem, objective, wish, limits, &stop, graphs)?;
-    if encoder.states.is_arithmetic() && config.solver == Spec::Builtin {
+    if encoder.states.is_arithmetic() && config.solver.is_embedded() {
         return Err(needs_arithmetic(&encoder));
     }
     let mut oracle = Oracle::new(config);

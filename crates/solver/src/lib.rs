@@ -8,7 +8,6 @@
 //! No answer is trusted here: whoever asks should evaluate the script under the values.
 
 mod deadline;
-#[cfg(any(feature = "cadical", feature = "batsat"))]
 mod embedded;
 mod error;
 mod external;

@@ -8,6 +8,7 @@ use hyperplan_smt::{Script, Status, Term, Value};
 use serde::Deserialize;
 
 use crate::deadline::Deadline;
+use crate::embedded::{BUILTIN, Engine, backend, names};
 use crate::error::{Error, Unknown};
 use crate::external::{self, Profile};
 
@@ -44,7 +45,7 @@ pub struct QuerySize {
     pub logic: Option<String>,
 }
 
-/// A dialogue with a solver about one growing script.
+/// A dialogue with a solver about one growing script, which may go on in another thread.
 pub trait Session: Send {
     /// Feeds what is new in the script since the last call, then asks whether it is satisfiable
     /// under the assumptions, Boolean terms. One session takes one script.
@@ -70,8 +71,10 @@ pub trait Session: Send {
 /// Which solver to use.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Spec {
-    /// The embedded engine.
+    /// The embedded engine with the best of its SAT solvers.
     Builtin,
+    /// The embedded engine with the SAT solver of that name: `cadical`, `batsat`.
+    Backend(&'static str),
     /// A solver that hyperplan knows: `z3`, `cvc5`, `yices`, `bitwuzla`.
     Profile(String),
     /// A solver that a configuration file describes.
@@ -88,11 +91,35 @@ impl Spec {
         external::for_arithmetic().map(|name| Spec::Profile(name.to_owned()))
     }
 
+    /// The embedded engine with each SAT solver of this build.
+    #[must_use]
+    pub fn backends() -> Vec<Spec> {
+        let specs = names().filter_map(|name| Spec::embedded(name)?.ok());
+        specs.filter(|spec| *spec != Spec::Builtin).collect()
+    }
+
+    /// Whether it is the embedded engine.
+    #[must_use]
+    pub fn is_embedded(&self) -> bool {
+        matches!(self, Spec::Builtin | Spec::Backend(_))
+    }
+
+    /// The embedded engine as it is called, if the name is one of its names.
+    ///
+    /// # Errors
+    /// Where this build has not got it.
+    pub fn embedded(name: &str) -> Option<Result<Spec, Error>> {
+        let known = names().find(|known| *known == name)?;
+        let spec = if known == BUILTIN { Spec::Builtin } else { Spec::Backend(known) };
+        Some(backend(known)?.map(|_| spec))
+    }
+
     /// What the solver is called before it was asked.
     #[must_use]
     pub fn name(&self) -> &str {
         match self {
-            Spec::Builtin => "builtin",
+            Spec::Builtin => BUILTIN,
+            Spec::Backend(name) => name,
             Spec::Profile(name) => name,
             Spec::Configured(profile) => profile.name(),
             Spec::Command(line) => line,
@@ -108,8 +135,8 @@ impl FromStr for Spec {
         if text.is_empty() {
             return Err(Error::Unsupported { what: "the solver's name is empty".to_owned() });
         }
-        if text == "builtin" {
-            return Ok(Spec::Builtin);
+        if let Some(embedded) = Spec::embedded(text) {
+            return embedded;
         }
         if let Some(profile) = external::profile(text) {
             return Ok(Spec::Profile(profile.name.clone()));
@@ -187,23 +214,20 @@ impl Options {
 /// When the solver is missing, or cannot do what the options say.
 pub fn open(spec: &Spec, options: &Options) -> Result<Box<dyn Session>, Error> {
     match spec {
-        Spec::Builtin => builtin(options),
+        Spec::Builtin | Spec::Backend(_) => {
+            let name = spec.name();
+            let backend = backend(name).ok_or_else(|| unknown(name))??;
+            Ok(Box::new(Engine::new(name, backend, options)?))
+        }
         Spec::Profile(name) => match external::profile(name) {
             Some(profile) => external::open_profile(profile, options),
-            None => Err(Error::Unsupported { what: format!("no solver {name} is known") }),
+            None => Err(unknown(name)),
         },
         Spec::Configured(profile) => external::open_profile(profile, options),
         Spec::Command(line) => external::open_command(line, options),
     }
 }
 
-#[cfg(any(feature = "cadical", feature = "batsat"))]
-fn builtin(options: &Options) -> Result<Box<dyn Session>, Error> {
-    Ok(Box::new(crate::embedded::Engine::new(options)?))
-}
-
-#[cfg(not(any(feature = "cadical", feature = "batsat")))]
-fn builtin(_: &Options) -> Result<Box<dyn Session>, Error> {
-    let what = "this build has no embedded solver (features cadical, batsat): use z3, cvc5 or yices";
-    Err(Error::Unsupported { what: what.to_owned() })
+fn unknown(name: &str) -> Error {
+    Error::Unsupported { what: format!("no solver {name} is known") }
 }

@@ -191,7 +191,6 @@ fn queries_are_kept_and_can_be_replayed() {
     assert!(kept.ends_with(dialogue), "{kept}");
 }
 
-#[cfg(any(feature = "cadical", feature = "batsat"))]
 #[test]
 fn every_check_of_the_embedded_solver_is_kept() {
     let directory = tempfile::tempdir().expect("a temporary directory");
@@ -219,7 +218,6 @@ fn every_check_of_the_embedded_solver_is_kept() {
     assert_eq!(fs::read_dir(&queries).expect("it exists").count(), 3);
 }
 
-#[cfg(any(feature = "cadical", feature = "batsat"))]
 #[test]
 fn queries_that_cannot_be_kept_are_an_error() {
     let directory = tempfile::tempdir().expect("a temporary directory");
@@ -254,7 +252,6 @@ fn quantifiers_beyond_a_solver_are_refused() {
     assert_eq!(refused(Spec::Command("no-such-solver".to_owned()), true, true), None);
 }
 
-#[cfg(any(feature = "cadical", feature = "batsat"))]
 #[test]
 fn the_embedded_solver_names_solvers_that_take_the_quantifiers() {
     let what = |nested| {
@@ -276,6 +273,33 @@ fn missing_solvers_say_where_they_were_sought() {
     assert!("z3,cvc5".parse::<Spec>().is_err());
     assert_eq!("yices-smt2".parse::<Spec>().expect("known"), Spec::Profile("yices".to_owned()));
     assert_eq!("builtin".parse::<Spec>().expect("known"), Spec::Builtin);
+}
+
+#[test]
+fn back_ends_have_names() {
+    // BatSat is in every build.
+    let built = if cfg!(feature = "cadical") { vec!["cadical", "batsat"] } else { vec!["batsat"] };
+    assert_eq!(Spec::backends().iter().map(Spec::name).collect::<Vec<_>>(), built);
+    for name in ["cadical", "batsat"] {
+        let identity = name.parse::<Spec>().and_then(|spec| Ok(open(&spec, &Options::default())?.identity()));
+        match identity {
+            Ok(identity) => {
+                assert_eq!(identity.name, name);
+                assert!(
+                    built.contains(&name) && identity.version.contains(&format!("({name}-")),
+                    "{identity:?}"
+                );
+            }
+            Err(error) => assert_eq!(
+                (built.contains(&name), error.is_unsupported(), error.to_string()),
+                (false, true, format!("this build has no {name}: it takes the cargo feature {name}"))
+            ),
+        }
+    }
+    let best = open(&Spec::Builtin, &Options::default()).expect("it is built in").identity();
+    assert!(best.name == "builtin" && best.version.contains(built[0]), "{best:?}");
+    let unknown = open(&Spec::Backend("kissat"), &Options::default()).err().map(|error| error.to_string());
+    assert_eq!(unknown.as_deref(), Some("no solver kissat is known"));
 }
 
 #[cfg(target_os = "linux")]

@@ -37,10 +37,11 @@ fn agrees(spec: &Spec, seeds: std::ops::Range<u64>) {
     assert!(sat > 20 && unsat > 20, "{sat} sat, {unsat} unsat: too one-sided");
 }
 
-#[cfg(any(feature = "cadical", feature = "batsat"))]
 #[test]
-fn builtin_agrees_with_brute_force() {
-    agrees(&Spec::Builtin, 0..600);
+fn back_ends_agree_with_brute_force() {
+    for spec in Spec::backends() {
+        agrees(&spec, 0..600);
+    }
 }
 
 #[test]

@@ -44,7 +44,9 @@ fn describe(solver: &Found, width: usize) -> String {
         }
         None => {
             lines.push("not found".to_owned());
-            lines.push(format!("tried {}", solver.tried.join(", ")));
+            if !solver.is_embedded {
+                lines.push(format!("tried {}", solver.tried.join(", ")));
+            }
             lines.push(solver.hint.clone());
         }
     }
@@ -57,6 +59,8 @@ fn describe(solver: &Found, width: usize) -> String {
 #[derive(Serialize)]
 struct Report<'a> {
     name: &'a str,
+    /// Whether it is part of hyperplan.
+    embedded: bool,
     path: Option<String>,
     version: Option<&'a str>,
     abilities: &'a [String],
@@ -84,6 +88,7 @@ impl<'a> Report<'a> {
         let install = &solver.install;
         Report {
             name: &solver.name,
+            embedded: solver.is_embedded,
             path: solver.path.as_ref().map(|p| p.display().to_string()),
             version: solver.version.as_deref(),
             abilities: &solver.abilities,

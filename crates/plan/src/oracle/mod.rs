@@ -114,7 +114,7 @@ impl<'c> Oracle<'c> {
         if let Some(listener) = &mut self.listener {
             listener.opened();
         }
-        Ok(Dialogue { session, trusted: self.config.solver == Spec::Builtin, options, second: None })
+        Ok(Dialogue { session, trusted: self.config.solver.is_embedded(), options, second: None })
     }
 
     /// Ends the dialogue that was opened last.

@@ -1,91 +1,75 @@
-//! `BatSat`: all Rust, for builds without a C++ compiler.
+//! `BatSat`: all Rust, and so in every build.
 
-use batsat::SolverOpts;
-use rustsat::solvers::{Solve, SolveIncremental, SolverResult};
-use rustsat::types::{Cl, Lit, TernaryVal};
-use rustsat_batsat::BasicSolver;
+use std::sync::atomic::Ordering;
 
-use super::budget::{Budget, Halt};
-use crate::error::Error;
+use ::batsat::{BasicCallbacks, Lit, Solver, SolverInterface as _, SolverOpts, lbool};
 
-/// An incremental SAT solver that stops when its budget is spent.
-pub(super) struct Backend {
-    sat: BasicSolver,
-    clauses: usize,
-    failure: Option<Error>,
+use super::backend::{Backend, Setup};
+
+/// A solver, and a clause on its way there.
+pub(super) struct BatSat {
+    sat: Solver<BasicCallbacks>,
+    clause: Vec<Lit>,
 }
 
-impl Backend {
-    /// A solver; whether it will be asked more than once makes no difference to it.
-    // The other backend can fail here.
-    #[allow(clippy::unnecessary_wraps)]
-    pub(super) fn new(seed: u64, _: bool) -> Result<Backend, Error> {
-        Ok(Backend { sat: seeded(seed), clauses: 0, failure: None })
-    }
-
-    /// Which solver this is: name and version.
-    pub(super) fn signature(&self) -> &'static str {
-        self.sat.signature()
-    }
-
-    /// How many clauses were added.
-    pub(super) fn clauses(&self) -> usize {
-        self.clauses
-    }
-
-    /// Readies the solver for clauses.
-    // The other backend may have to wait.
-    #[allow(clippy::unnecessary_wraps, clippy::unused_self)]
-    pub(super) fn ready(&mut self, _: &Budget) -> Result<(), Halt> {
-        Ok(())
-    }
-
-    /// Adds a clause. A failure is kept until the next solve.
-    pub(super) fn clause(&mut self, literals: &[Lit]) {
-        self.clauses += 1;
-        if let Err(error) = self.sat.add_clause_ref(Cl::new(literals)) {
-            self.failure.get_or_insert(engine_error(&error));
-        }
-    }
-
-    /// Whether the clauses are satisfiable under the assumptions. `BatSat` asks at every conflict and decision
-    /// whether to stop.
-    pub(super) fn solve(&mut self, assumptions: &[Lit], budget: &Budget) -> Result<bool, Halt> {
-        if let Some(error) = self.failure.take() {
-            return Err(error.into());
-        }
-        if budget.spent() {
-            return Err(Halt::Spent);
-        }
-        let watched = budget.clone();
-        self.sat.batsat_mut().cb_mut().set_stop(move || watched.spent());
-        match self.sat.solve_assumps(assumptions).map_err(|error| engine_error(&error))? {
-            SolverResult::Sat => Ok(true),
-            SolverResult::Unsat => Ok(false),
-            SolverResult::Interrupted => Err(Halt::Spent),
-        }
-    }
-
-    /// The value of a literal in the last model; what does not matter is false.
-    pub(super) fn is_true(&self, literal: Lit) -> Result<bool, Error> {
-        let value = self.sat.var_val(literal.var()).map_err(|error| engine_error(&error))?;
-        Ok((value == TernaryVal::True) == literal.is_pos())
+impl BatSat {
+    fn literal(&mut self, number: i32) -> Lit {
+        Lit::new(self.sat.var_of_int(number.unsigned_abs() - 1), number > 0)
     }
 }
 
-/// `BatSat` makes no random choices by default; a seed other than 0 gives the variables slightly different weights to
-/// begin with.
-fn seeded(seed: u64) -> BasicSolver {
-    let mut sat = BasicSolver::default();
-    if seed != 0 {
-        // Its generator takes numbers between 0 and 2^31 - 1, exclusive.
-        let random_seed = (1 + seed % 2_000_000_000) as f64;
-        let options = SolverOpts { random_seed, rnd_init_act: true, ..SolverOpts::default() };
-        *sat.batsat_mut() = batsat::Solver::new(options, batsat::BasicCallbacks::new());
+impl Backend for BatSat {
+    fn signature() -> String {
+        // The crate does not tell; a test compares this with what is locked.
+        "batsat-0.6.0".to_owned()
     }
-    sat
+
+    fn new(setup: &Setup) -> Result<BatSat, String> {
+        let mut options = SolverOpts::default();
+        // It makes no random choices by itself; a seed gives the variables slightly different weights to begin with.
+        if setup.seed != 0 {
+            // Its generator takes numbers between 0 and 2^31 - 1, exclusive.
+            options.random_seed = (1 + setup.seed % 2_000_000_000) as f64;
+            options.rnd_init_act = true;
+        }
+        let stop = setup.stop.clone();
+        let mut callbacks = BasicCallbacks::new();
+        // It asks at every conflict and decision.
+        callbacks.set_stop(move || stop.load(Ordering::Relaxed));
+        Ok(BatSat { sat: Solver::new(options, callbacks), clause: Vec::new() })
+    }
+
+    fn clause(&mut self, literals: &[i32]) {
+        let mut clause = std::mem::take(&mut self.clause);
+        clause.clear();
+        clause.extend(literals.iter().map(|&number| self.literal(number)));
+        self.sat.add_clause_reuse(&mut clause);
+        self.clause = clause;
+    }
+
+    fn solve(&mut self, assumptions: &[i32]) -> Option<bool> {
+        let assumptions: Vec<Lit> = assumptions.iter().map(|&number| self.literal(number)).collect();
+        let answer = self.sat.solve_limited(&assumptions);
+        (answer != lbool::UNDEF).then_some(answer == lbool::TRUE)
+    }
+
+    fn model(&mut self) -> Vec<bool> {
+        self.sat.get_model().iter().map(|&value| value == lbool::TRUE).collect()
+    }
 }
 
-fn engine_error(error: &impl std::fmt::Display) -> Error {
-    Error::Engine { name: "builtin".to_owned(), message: error.to_string() }
+#[cfg(test)]
+mod tests {
+    use super::{Backend as _, BatSat};
+
+    #[test]
+    fn the_version_is_that_which_is_locked() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../Cargo.lock");
+        let locked = std::fs::read_to_string(file).expect("it is committed");
+        let (_, after) = locked.split_once("name = \"batsat\"\nversion = \"").expect("it is a dependency");
+        assert_eq!(
+            Some(BatSat::signature().as_str()),
+            after.split_once('"').map(|(version, _)| format!("batsat-{version}")).as_deref()
+        );
+    }
 }

@@ -1,29 +1,32 @@
 //! Gates: literals with constants folded, and the circuits of bit-vector operations on them.
 //! Bits are in order of weight, the lowest first.
 
-use rustsat::types::{Lit, Var};
-
-use super::backend::Backend;
+use super::backend::Lit;
+use super::worker::Worker;
 use crate::session::QuerySize;
+
+/// What all SAT solvers take: some double the numbers.
+const MOST_VARIABLES: i32 = i32::MAX / 2;
 
 /// Makes literals and clauses.
 pub(super) struct Gates {
-    pub(super) sat: Backend,
-    next: u32,
+    pub(super) sat: Worker,
+    /// How many variables there are.
+    variables: i32,
     /// A literal that is true.
     top: Lit,
 }
 
 impl Gates {
-    pub(super) fn new(mut sat: Backend) -> Gates {
-        let top = Var::new(0).pos_lit();
+    pub(super) fn new(mut sat: Worker) -> Gates {
+        let top = Lit::new(1);
         sat.clause(&[top]);
-        Gates { sat, next: 1, top }
+        Gates { sat, variables: 1, top }
     }
 
     /// What the SAT solver was given.
     pub(super) fn size(&self) -> QuerySize {
-        QuerySize { clauses: self.sat.clauses(), variables: self.next as usize, ..QuerySize::default() }
+        QuerySize { clauses: self.sat.clauses(), variables: self.variables as usize, ..QuerySize::default() }
     }
 
     pub(super) fn constant(&self, value: bool) -> Lit {
@@ -31,14 +34,13 @@ impl Gates {
     }
 
     fn value(&self, literal: Lit) -> Option<bool> {
-        (literal.var() == self.top.var()).then_some(literal == self.top)
+        (literal.variable() == self.top.variable()).then_some(literal == self.top)
     }
 
     pub(super) fn fresh(&mut self) -> Lit {
-        assert!(self.next < Var::MAX_IDX, "too many SAT variables");
-        let var = Var::new(self.next);
-        self.next += 1;
-        var.pos_lit()
+        assert!(self.variables < MOST_VARIABLES, "too many SAT variables");
+        self.variables += 1;
+        Lit::new(self.variables)
     }
 
     pub(super) fn and(&mut self, a: Lit, b: Lit) -> Lit {

@@ -1,13 +1,7 @@
 //! What a check may spend: time until its deadline, and memory.
 
-use std::cell::Cell;
-use std::time::{Duration, Instant};
-
 use crate::deadline::Deadline;
 use crate::error::{Error, Unknown};
-
-/// How often memory is looked at: the system takes some microseconds to answer.
-const INTERVAL: Duration = Duration::from_millis(10);
 
 /// The memory of this process must not pass a limit.
 #[derive(Clone, Debug)]
@@ -15,7 +9,6 @@ pub(super) struct Memory {
     mib: u64,
     /// Most bytes of the process.
     most: u64,
-    looked: Cell<Option<Instant>>,
 }
 
 impl Memory {
@@ -30,15 +23,10 @@ impl Memory {
             return Err(Error::Unsupported { what: what.to_owned() });
         };
         let most = used.saturating_add(mib.saturating_mul(1 << 20));
-        Ok(Memory { mib, most, looked: Cell::new(None) })
+        Ok(Memory { mib, most })
     }
 
     fn spent(&self) -> bool {
-        let now = Instant::now();
-        if self.looked.get().is_some_and(|then| now < then + INTERVAL) {
-            return false;
-        }
-        self.looked.set(Some(now));
         used().is_some_and(|used| used > self.most)
     }
 }

@@ -7,8 +7,8 @@
 //! Bit-vector terms become literals, one per bit, by circuits that hold in both directions.
 
 use hyperplan_smt::{Op, Script, Sort, Term, Terms, Value, View};
-use rustsat::types::Lit;
 
+use super::backend::Lit;
 use super::bits::Gates;
 use super::budget::{Budget, Halt};
 use crate::error::Error;

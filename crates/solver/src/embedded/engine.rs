@@ -2,10 +2,11 @@
 
 use hyperplan_smt::{Header, Script, Sort, Term, Value, WriteOptions, write_script};
 
-use super::backend::Backend;
+use super::backend::Built;
 use super::bits::Gates;
 use super::budget::{Budget, Halt, Memory};
 use super::cnf::{Cnf, width};
+use super::worker::Worker;
 use crate::deadline::Deadline;
 use crate::error::Error;
 use crate::session::{Answer, Identity, Options, Quantifiers, QuerySize, Session};
@@ -13,6 +14,8 @@ use crate::transcript::{cannot_keep, numbered};
 
 /// The embedded engine.
 pub(crate) struct Engine {
+    /// What the user calls it.
+    name: String,
     options: Options,
     /// The limit, counted from the start of the session.
     memory: Option<Memory>,
@@ -28,17 +31,18 @@ pub(crate) struct Engine {
 }
 
 impl Engine {
-    pub(crate) fn new(options: &Options) -> Result<Engine, Error> {
-        options.demand_at_most(Quantifiers::None, "builtin")?;
+    /// An engine of that name, with one of the SAT solvers.
+    pub(crate) fn new(name: &str, backend: Built, options: &Options) -> Result<Engine, Error> {
+        options.demand_at_most(Quantifiers::None, name)?;
         let memory = options.memory_mib.map(Memory::growing_by).transpose()?;
-        let backend = Backend::new(options.seed, options.incremental)?;
-        let version = format!("{} ({})", env!("CARGO_PKG_VERSION"), backend.signature());
-        let cnf = Cnf::new(Gates::new(backend));
+        let worker = Worker::start(name, backend, options.seed, options.incremental)?;
+        let cnf = Cnf::new(Gates::new(worker));
         Ok(Engine {
+            name: name.to_owned(),
             options: options.clone(),
             memory,
             cnf,
-            version,
+            version: backend.version(),
             fed: 0,
             has_model: false,
             unsupported: None,
@@ -52,7 +56,7 @@ impl Engine {
         let Some(directory) = &self.options.queries else { return Ok(()) };
         let header = Header { status: self.options.status, ..Header::default() };
         let options = WriteOptions { header, assumptions: assumptions.to_vec(), ..WriteOptions::default() };
-        let mut file = numbered(directory, "builtin")?;
+        let mut file = numbered(directory, &self.name)?;
         write_script(&mut file, script, &options).map_err(|source| cannot_keep(directory, source))
     }
 
@@ -79,13 +83,13 @@ impl Engine {
 
 impl Engine {
     /// The bits of a symbol in the model, as a number; zero if it has not occurred.
-    fn number(&self, script: &Script, symbol: Term) -> Result<u128, Error> {
+    fn number(&self, script: &Script, symbol: Term) -> u128 {
         let mut number = 0;
         let literals = self.cnf.known_bits(symbol, width(&script.terms, symbol)).unwrap_or_default();
         for (i, &literal) in literals.iter().enumerate() {
-            number |= u128::from(self.cnf.gates.sat.is_true(literal)?) << i;
+            number |= u128::from(self.cnf.gates.sat.is_true(literal)) << i;
         }
-        Ok(number)
+        number
     }
 }
 
@@ -115,7 +119,7 @@ impl Session for Engine {
 
     fn values(&mut self, script: &Script, symbols: &[Term]) -> Result<Vec<Value>, Error> {
         if !self.has_model {
-            return Err(Error::NoModel { name: "builtin".to_owned() });
+            return Err(Error::NoModel { name: self.name.clone() });
         }
         let sat = &self.cnf.gates.sat;
         let mut values = Vec::with_capacity(symbols.len());
@@ -123,11 +127,10 @@ impl Session for Engine {
             values.push(match script.terms.sort(symbol) {
                 Sort::Bool => {
                     let literal = self.cnf.known_literal(symbol);
-                    let value = literal.map_or(Ok(symbol.is_negated()), |literal| sat.is_true(literal));
-                    Value::Bool(value?)
+                    Value::Bool(literal.map_or(symbol.is_negated(), |literal| sat.is_true(literal)))
                 }
-                Sort::BitVec(width) => Value::Bv { width, bits: self.number(script, symbol)? },
-                Sort::Enum(enumeration) => Value::Enum(enumeration, self.number(script, symbol)? as u32),
+                Sort::BitVec(width) => Value::Bv { width, bits: self.number(script, symbol) },
+                Sort::Enum(enumeration) => Value::Enum(enumeration, self.number(script, symbol) as u32),
                 sort @ (Sort::Int | Sort::Real) => Value::default_of(sort),
             });
         }
@@ -135,7 +138,7 @@ impl Session for Engine {
     }
 
     fn identity(&self) -> Identity {
-        Identity { name: "builtin".to_owned(), version: self.version.clone() }
+        Identity { name: self.name.clone(), version: self.version.clone() }
     }
 
     fn size(&self) -> QuerySize {

@@ -1,17 +1,17 @@
 //! The embedded engine: scripts of Booleans and bit-vectors, by bit-blasting and SAT.
 //!
-//! The SAT solver is `CaDiCaL`, or `BatSat` in builds that have only Rust: the `backend`, the same four functions in
-//! either module.
+//! Terms become clauses (`cnf`, `bits`), which one of several SAT solvers gets (`backend` has their table), in a thread
+//! of its own (`worker`).
 
-#[cfg(not(feature = "cadical"))]
-#[path = "batsat.rs"]
 mod backend;
-#[cfg(feature = "cadical")]
-#[path = "cadical.rs"]
-mod backend;
+mod batsat;
 mod bits;
 mod budget;
+#[cfg(feature = "cadical")]
+mod cadical;
 mod cnf;
 mod engine;
+mod worker;
 
+pub(crate) use backend::{BUILTIN, backend, names};
 pub(crate) use engine::Engine;

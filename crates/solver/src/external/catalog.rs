@@ -9,6 +9,7 @@ use serde::de::DeserializeOwned;
 use toml::Spanned;
 
 use super::profile::{Assumptions, FILE, Install, Profile, Theory};
+use crate::embedded;
 use crate::error::Error;
 use crate::session::{Quantifiers, Spec};
 
@@ -267,8 +268,8 @@ pub(crate) fn split_list(text: &str) -> Vec<&str> {
 
 /// What is wrong with a name.
 fn misnamed(name: &str) -> Option<String> {
-    if name == "builtin" {
-        return Some("builtin is the embedded solver; choose another name".to_owned());
+    if embedded::backend(name).is_some() {
+        return Some(format!("{name} is an embedded solver; choose another name"));
     }
     let good = name.chars().all(|c| c.is_ascii_alphanumeric() || "-_.".contains(c));
     (name.is_empty() || !good)

@@ -8,6 +8,7 @@ use super::probe::{self, Ability};
 use super::profile::{Install, Profile, Theory};
 use super::program::locate;
 use super::version;
+use crate::embedded;
 
 /// A solver, found or not.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -30,6 +31,8 @@ pub struct Found {
     pub install: Install,
     /// The configuration file that describes it.
     pub origin: Option<PathBuf>,
+    /// It is part of hyperplan.
+    pub is_embedded: bool,
 }
 
 /// Every solver that hyperplan knows without configuration, as [`Catalog::discover`].
@@ -39,7 +42,7 @@ pub fn discover() -> Vec<Found> {
 }
 
 impl Catalog {
-    /// Every solver that can be named, the embedded one first, in a fixed order. What each can do is found out by
+    /// Every solver that can be named, the embedded ones first, in a fixed order. What each can do is found out by
     /// asking small questions, which takes a moment.
     #[must_use]
     pub fn discover(&self) -> Vec<Found> {
@@ -50,7 +53,7 @@ impl Catalog {
             // A thread that panicked is one solver less.
             asked.into_iter().filter_map(|found| found.join().ok()).collect::<Vec<_>>()
         });
-        builtin().into_iter().chain(external).collect()
+        embedded::names().filter_map(embedded).chain(external).collect()
     }
 }
 
@@ -73,6 +76,7 @@ fn found(profile: &Profile) -> Found {
         hint: profile.install.to_string(),
         install: profile.install.clone(),
         origin: profile.origin.clone(),
+        is_embedded: false,
     }
 }
 
@@ -83,24 +87,25 @@ pub(crate) fn for_arithmetic() -> Option<&'static str> {
     able.find(|profile| locate(profile).0.is_some()).map(|profile| profile.name.as_str())
 }
 
-#[cfg(any(feature = "cadical", feature = "batsat"))]
-fn builtin() -> Option<Found> {
-    use crate::session::{Options, Session as _};
-    let engine = crate::embedded::Engine::new(&Options::default()).ok()?;
+/// The embedded engine, by one of its names.
+fn embedded(name: &'static str) -> Option<Found> {
+    let (path, version, abilities, hint) = match embedded::backend(name)? {
+        Ok(built) => {
+            let abilities = ["bit-vectors", "incremental"].map(str::to_owned).to_vec();
+            (std::env::current_exe().ok(), Some(built.version()), abilities, "part of hyperplan".to_owned())
+        }
+        Err(missing) => (None, None, Vec::new(), missing.to_string()),
+    };
     Some(Found {
-        name: "builtin".to_owned(),
-        path: std::env::current_exe().ok(),
-        version: Some(engine.identity().version),
+        name: name.to_owned(),
+        path,
+        version,
         tried: Vec::new(),
-        abilities: ["bit-vectors", "incremental"].map(str::to_owned).to_vec(),
+        abilities,
         faults: Vec::new(),
-        hint: "part of hyperplan".to_owned(),
+        hint,
         install: Install::default(),
         origin: None,
+        is_embedded: true,
     })
-}
-
-#[cfg(not(any(feature = "cadical", feature = "batsat")))]
-fn builtin() -> Option<Found> {
-    None
 }

@@ -22,7 +22,7 @@ impl Facts {
     pub fn of(spec: &Spec) -> Facts {
         let name = spec.name().to_owned();
         match spec {
-            Spec::Builtin => {
+            Spec::Builtin | Spec::Backend(_) => {
                 let theories = Some(vec![Theory::BitVectors, Theory::Datatypes]);
                 Facts { name, quantifiers: Quantifiers::None, theories, logic: None }
             }

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::catalog::profiles;
 use super::profile::{FILE, Profile};
 use super::version::Version;
+use crate::embedded;
 use crate::error::Error;
 use crate::session::{Options, Quantifiers};
 
@@ -125,7 +126,7 @@ fn similar(program: &str) -> Option<&'static str> {
     let names = profiles().iter().flat_map(|profile| [&profile.name].into_iter().chain(&profile.aliases));
     names
         .map(String::as_str)
-        .chain(["builtin"])
+        .chain(embedded::names())
         .map(|name| (strsim::damerau_levenshtein(&program, name), name))
         .filter(|(distance, name)| *distance <= if name.len() > 4 { 2 } else { 1 })
         .min_by_key(|(distance, _)| *distance)
@@ -158,11 +159,23 @@ mod tests {
 
     #[test]
     fn slips_in_names_of_solvers() {
-        let near = ["z4", "Z3", "cvc4", "yice", "bitwzula", "buildin", "ls", "minisat", "/usr/bin/z3x", ""]
-            .map(similar);
-        let names = ["z3", "z3", "cvc5", "yices", "bitwuzla", "builtin"].map(Some);
-        assert_eq!(near[..6], names);
-        assert_eq!(near[6..], [None; 4]);
+        let near = [
+            "z4",
+            "Z3",
+            "cvc4",
+            "yice",
+            "bitwzula",
+            "buildin",
+            "cadicle",
+            "ls",
+            "minisat",
+            "/usr/bin/z3x",
+            "",
+        ]
+        .map(similar);
+        let names = ["z3", "z3", "cvc5", "yices", "bitwuzla", "builtin", "cadical"].map(Some);
+        assert_eq!(near[..7], names);
+        assert_eq!(near[7..], [None; 4]);
         let message = Program::of_command("z4 -in").err().map(|error| error.to_string()).unwrap_or_default();
         assert!(message.contains("did you mean z3? give the name"), "{message}");
     }

@@ -49,7 +49,7 @@ impl Catalog {
     /// When it is not installed.
     pub fn standalone(&self, spec: &Spec) -> Result<Option<Standalone>, Error> {
         let profile = match spec {
-            Spec::Builtin => return Ok(None),
+            Spec::Builtin | Spec::Backend(_) => return Ok(None),
             Spec::Profile(name) => self.profile(name),
             Spec::Configured(profile) => Some(profile),
             Spec::Command(line) => {
@@ -80,7 +80,7 @@ impl Catalog {
         }))
     }
 
-    /// The solvers that can be named and are there, the embedded one first.
+    /// The solvers that can be named and are there, the embedded one, as it comes, first.
     #[must_use]
     pub fn installed(&self) -> Vec<Spec> {
         let external = self.profiles().iter().filter(|profile| locate(profile).0.is_some());
@@ -88,7 +88,6 @@ impl Catalog {
             Some(_) => Spec::Configured(profile.clone()),
             None => Spec::Profile(profile.name.clone()),
         });
-        let builtin = cfg!(any(feature = "cadical", feature = "batsat")).then_some(Spec::Builtin);
-        builtin.into_iter().chain(external).collect()
+        std::iter::once(Spec::Builtin).chain(external).collect()
     }
 }

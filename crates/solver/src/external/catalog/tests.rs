@@ -99,7 +99,10 @@ fn errors_have_a_place_and_advice() {
         error("[[solver]]\nname = \"a b\"\nprogram = \"x\"\n"),
         "etc/hyperplan.toml:2: \"a b\" is no name for a solver: use letters, digits, `-`, `_` and `.`"
     );
-    assert!(error("[[solver]]\nname = \"builtin\"\nprogram = \"x\"\n").ends_with("choose another name"));
+    for name in ["builtin", "cadical", "batsat"] {
+        let taken = error(&format!("[[solver]]\nname = \"{name}\"\nprogram = \"x\"\n"));
+        assert!(taken.ends_with(&format!("{name} is an embedded solver; choose another name")), "{taken}");
+    }
     assert!(error("[[solver]]\nname = \"x\"\nprogram = \" \"\n").starts_with("etc/hyperplan.toml:3: "));
     assert!(
         error("[[solver]]\nname = \"x\"\nprogram = \"x\"\narguments = [\"{file}\"]\n").contains("one-shot")
