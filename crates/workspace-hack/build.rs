@@ -1,0 +1,3 @@
+//! Does nothing: without it, build-dependencies would be ignored.
+
+fn main() {}
