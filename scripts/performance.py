@@ -13,11 +13,11 @@ import sys
 import tempfile
 from collections.abc import Callable
 
-from bench import compare, costs, machine, maps, run, targets
+from bench import backends, compare, costs, machine, maps, run, targets
 from bench.context import Context
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-SECTIONS = ("targets", "large", "growth", "least", "quantifiers", "external", "command", "builds", "profile")
+SECTIONS = ("targets", "large", "growth", "least", "quantifiers", "external", "backends", "command", "builds", "profile")
 NOT_BY_DEFAULT = ("builds", "profile")
 
 
@@ -152,6 +152,7 @@ def measure(name: str, context: Context, picture: pathlib.Path) -> None:
         "least": compare.least,
         "quantifiers": compare.quantifiers,
         "external": compare.external,
+        "backends": backends.backends,
         "command": costs.command,
         "builds": costs.builds,
         "profile": costs.profile,
