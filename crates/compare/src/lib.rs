@@ -9,7 +9,7 @@ pub mod contest;
 mod folders;
 mod html;
 mod judge;
-mod latex;
+pub mod latex;
 mod links;
 mod log;
 mod paths;

@@ -68,7 +68,7 @@ pub(crate) fn summary(contest: &Contest<'_>, judgement: &Judgement, width: Optio
 }
 
 /// A table in plain characters. It is as wide as it is: what is piped to a file is not to depend on a terminal.
-pub fn terminal(sheet: &Sheet) -> String {
+pub(crate) fn terminal(sheet: &Sheet) -> String {
     let mut table = Table::new();
     table.load_style(presets::NOTHING).set_content_arrangement(ContentArrangement::Disabled);
     table.set_header(&sheet.head).add_rows(&sheet.rows);
