@@ -67,3 +67,11 @@ fn every_operator_unrolls_to_linearly_many_terms() {
         }
     }
 }
+
+#[test]
+fn encoders_are_shared_and_queries_sent() {
+    fn shared<T: Send + Sync>() {}
+    fn sent<T: Send>() {}
+    shared::<crate::Encoder<'_>>();
+    sent::<crate::Query<'_, '_>>();
+}

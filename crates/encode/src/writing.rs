@@ -1,4 +1,4 @@
-//! What a way of writing states has to provide. There are two: [`crate::enumerated`] and [`crate::variables`].
+//! What a way of writing states has to provide. There are two: `enumerated` and `variables`.
 //!
 //! A [`Writer`] knows one objective, and what its paths can be; it is chosen where the encoder is built. A [`Writing`]
 //! belongs to one query and keeps the terms of the paths in it, which others know by number only.
