@@ -1,10 +1,9 @@
 //! What a search tells, as data: why something is undecided or failed, and what else is worth knowing. Words are made
 //! where these are shown; advice about flags is the caller's.
 
-use crate::config::{Quantifiers, States};
 use crate::evidence::Evidence;
 use hyperplan_encode as encode;
-use hyperplan_problem::answer::ReasonCode;
+use hyperplan_problem::answer::{Quantifiers, ReasonCode, States};
 use hyperplan_solver::{self as solver, PrintedModelError, Unknown};
 use hyperplan_verify as verify;
 use std::fmt::{self, Display};

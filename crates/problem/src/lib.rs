@@ -5,7 +5,6 @@ pub mod display;
 mod edges;
 mod expr;
 mod formula;
-mod grid;
 mod ids;
 pub mod lower;
 mod objective;

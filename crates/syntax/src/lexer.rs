@@ -14,7 +14,7 @@ use nom::{IResult, Input as _, Parser};
 use nom_locate::LocatedSpan;
 
 use crate::diagnostic::Diagnostic;
-use crate::parser::habit;
+use crate::lookalike::looks_like;
 use crate::span::{SourceId, Span};
 use crate::token::{SYMBOLS, Tok, Token, reserved};
 
@@ -143,7 +143,7 @@ fn complaint(what: Lexeme, piece: &Input<'_>, span: Span) -> Diagnostic {
             };
             let error = Diagnostic::error("bad-character", span, message);
             let first = text.chars().next().unwrap_or_default();
-            match (habit::looks_like(first), first) {
+            match (looks_like(first), first) {
                 (Some(sign), _) => error.with_help(format!("write `{sign}`")),
                 (_, '@') => error.with_help("what is read of a path is written `goal[p]`"),
                 (_, '?') => error.with_help("write `if C then A else B`"),

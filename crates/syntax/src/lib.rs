@@ -4,6 +4,7 @@ pub mod ast;
 mod diagnostic;
 mod excerpt;
 mod lexer;
+mod lookalike;
 pub mod operator;
 mod parser;
 mod print;

@@ -6,7 +6,7 @@
 //! at the closing `}`, or at the next line that begins with a keyword.
 
 mod expr;
-pub(crate) mod habit;
+mod habit;
 mod item;
 mod operand;
 mod recover;

@@ -4,7 +4,8 @@ use crate::graph::Ahead;
 use crate::horizon::horizon;
 use crate::joint::JointMove;
 use crate::report::{Budget, Defeat, Error, Stop, Verdict};
-use crate::search::{Fixed, Outcome, Search};
+use crate::run::Outcome;
+use crate::search::{Fixed, Search};
 use hyperplan_problem::{Mode, Objective, Problem, Quantifier, Strategy, Trace};
 
 /// Whether the strategy, one trace for each path variable of the objective's leading block, decides the objective

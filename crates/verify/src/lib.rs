@@ -64,6 +64,7 @@ mod progress;
 mod recent;
 mod report;
 mod residual;
+mod run;
 mod scene;
 mod search;
 mod spread;

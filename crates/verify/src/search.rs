@@ -1,17 +1,13 @@
-//! The search: values of all levels, moved step by step (see the crate's documentation).
+//! What a search has, and where it is.
 
 use crate::atoms::{Atom, translate};
 use crate::graph::{Graph, StateId};
-use crate::history::History;
 use crate::horizon::horizon;
-use crate::joint::{JointId, JointMove};
-use crate::layer::{Members, Next};
 use crate::level::{Level, levels};
 use crate::progress::Progress;
 use crate::recent::Recent;
 use crate::report::{Budget, Error, Reached, Stop};
 use crate::residual::{AtomId, ResidualId, Residuals};
-use crate::spread::{Kinds, Spread};
 use crate::valuation::{ValuationId, Valuations};
 use crate::value::{Sets, ValueId};
 use hyperplan_problem::{ActionId, Mode, Objective, PathId, Problem, SystemId};
@@ -24,15 +20,6 @@ pub(crate) struct Fixed {
     pub(crate) path: PathId,
     pub(crate) states: Vec<StateId>,
     pub(crate) actions: Vec<ActionId>,
-}
-
-/// What the search found.
-#[derive(Debug)]
-pub(crate) enum Outcome {
-    /// The truth value, and the moves of the first block that decide it, where some do.
-    Decided(bool, Option<Vec<JointMove>>),
-    /// It depends on what a trace would have done beyond its end.
-    Missing,
 }
 
 /// All that a search needs.
@@ -114,37 +101,6 @@ impl<'p> Search<'p> {
         let graphs = self.graphs.iter().map(Graph::len).max().unwrap_or(0);
         let joints = self.levels.iter().map(|l| l.joint.len()).max().unwrap_or(0);
         Reached { states: graphs.max(joints) as u64, ..self.reached }
-    }
-
-    /// The objective's value on the fixed traces. With `trail`, the moves that decide it are found, too.
-    pub(crate) fn run(&mut self, trail: bool) -> Result<Outcome, Stop> {
-        let decisive = self.levels[0].decisive;
-        let start = Members::of(&[JointId::START], 1);
-        let mut history = History { layers: vec![vec![(ValueId::START, start)]], sets: Vec::new() };
-        let mut next = Next::default();
-        let mut kinds: [Option<Kinds>; 2] = [None, None];
-        let mut missing = false;
-        loop {
-            let base = self.enter()?;
-            let found = match self.spread(&history.layers, kinds[0].as_ref(), base, &mut next)? {
-                Spread::Decided(last) => {
-                    let chain = if trail { Some(self.look_back(history, last)?) } else { None };
-                    return Ok(Outcome::Decided(decisive, chain));
-                }
-                Spread::Open(found) => found,
-            };
-            missing |= found.missing;
-            let layer = next.take(self.levels[0].joint.len());
-            if layer.is_empty() {
-                return Ok(if missing { Outcome::Missing } else { Outcome::Decided(!decisive, None) });
-            }
-            self.count_entries(layer.iter().map(|(_, members)| members.size()).sum())?;
-            history.layers.push(layer);
-            history.sets.push(std::mem::replace(&mut self.before, std::mem::take(&mut self.now)));
-            let [_, last] = kinds;
-            kinds = [last, Some(found)];
-            self.time += 1;
-        }
     }
 
     /// Turns to the present time: where the fixed traces are, and what their atoms say.

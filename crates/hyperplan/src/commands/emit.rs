@@ -1,6 +1,5 @@
 //! `hyperplan emit`: benchmarks in SMT-LIB 2.
 
-use super::emit_family;
 use crate::args;
 use crate::config;
 use crate::explain::Explain;
@@ -17,15 +16,14 @@ use std::time::Instant;
 /// The most values that `--each` takes.
 const MOST_VALUES: i64 = 100_000;
 
-pub(crate) fn run(args: &args::Emit, out: &mut Output) -> Outcome {
-    let Some(file) = &args.file else { return emit_family::run(args, out) };
+pub(crate) fn run(args: &args::Emit, file: &Path, out: &mut Output) -> Outcome {
     let common = common(args, &config::date(args.date.as_deref())?)?;
     let text = read_source(file)?;
     let (mut target, mut worst) = (None, Status::Good);
     for setting in settings(args)? {
         let mut set = args.set.clone();
         set.extend(setting.clone());
-        let problem = args::Problem { file: file.clone(), set };
+        let problem = args::Problem { file: file.to_owned(), set };
         let (loaded, consts) = Loaded::with_consts(&problem, &text, Instant::now(), out)?;
         let objectives = loaded.selected(args.selection.objective.as_deref(), false)?;
         let several = objectives.len() > 1 || setting.is_some() || encodings(args).count() > 1;

@@ -22,7 +22,10 @@ pub(crate) fn run(cli: &Cli, out: &mut Output) -> Outcome {
     let verbose = cli.global.verbose;
     match &cli.command {
         Command::Solve(args) => solve::run(args, verbose, cli.global.quiet, out),
-        Command::Emit(args) => emit::run(args, out),
+        Command::Emit(args) => match &args.file {
+            Some(file) => emit::run(args, file, out),
+            None => emit_family::run(args, out),
+        },
         Command::Horizon(args) => horizon::run(args, out),
         Command::Check(args) => check::run(args, verbose, out),
         Command::Verify(args) => verify::run(args, out),

@@ -3,9 +3,9 @@
 use super::base::Base;
 use super::consts::duplicate;
 use super::diagnostics::suggest;
+use super::env::Env;
+use super::grid::{self, Format, GridMap, Legend, MOVES, Meaning, Move, Row, Rule, Rules};
 use super::ros;
-use super::system::Env;
-use crate::grid::{self, Format, GridMap, Legend, MOVES, Meaning, Move, Row, Rule, Rules};
 use hyperplan_syntax::ast::{self, Ident, SystemItem, Text};
 use hyperplan_syntax::{Diagnostic, Span};
 use rustc_hash::FxHashMap;

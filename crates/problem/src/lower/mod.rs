@@ -9,10 +9,12 @@ mod clauses;
 mod consts;
 mod damage;
 mod diagnostics;
+mod env;
 mod expr;
 mod formula;
 mod fractions;
 mod graphs;
+mod grid;
 mod json;
 mod labels;
 mod limits;
@@ -47,12 +49,13 @@ use crate::ids::SystemId;
 use crate::prelude;
 use crate::problem::Problem;
 use consts::{constants, duplicate};
+use env::Env;
 use hyperplan_syntax::ast::{self, Item, ObjectiveBody};
 use hyperplan_syntax::{Diagnostic, SourceMap, Span};
 use objective::{Shared, lower_objective};
 use paths::Defines;
 use rustc_hash::FxHashMap;
-use system::{Env, lower_system};
+use system::lower_system;
 use typed_index_collections::TiVec;
 
 /// Gives the contents of files that a problem names.

@@ -1,7 +1,7 @@
 //! Maps of the ROS map_server: a YAML file that names a picture and says what its shades mean.
 
-use super::system::Env;
-use crate::grid::{GridMap, MAX_CELLS, pgm};
+use super::env::Env;
+use super::grid::{GridMap, MAX_CELLS, pgm};
 use hyperplan_syntax::{Diagnostic, Span};
 
 /// What the YAML file says.

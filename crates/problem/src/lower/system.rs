@@ -2,29 +2,20 @@
 
 use super::base::{Actions, Base};
 use super::clauses::lower_clause;
-use super::consts::{Consts, duplicate};
-use super::diagnostics::Diagnostics;
+use super::consts::duplicate;
+use super::env::Env;
 use super::expr::{Context, truth, typed};
 use super::labels;
 use super::limits::{Limits, MAX_RANGE};
 use super::state::{Names, StateContext};
 use super::typed::{Typed, and, or};
-use super::{Loader, graphs, maps};
+use super::{graphs, maps};
 use crate::expr::{Expr, Leaf, Type};
 use crate::ids::{ActionId, LabelId, VarId};
 use crate::system::{Label, System, Var};
 use hyperplan_syntax::ast::{self, Ident, SystemItem, SystemKind};
-use hyperplan_syntax::{Diagnostic, SourceMap, Span};
+use hyperplan_syntax::{Diagnostic, Span};
 use rustc_hash::FxHashMap;
-
-/// What lowering a system needs besides its syntax.
-pub(crate) struct Env<'a> {
-    pub(crate) consts: &'a Consts,
-    pub(crate) actions: &'a mut Actions,
-    pub(crate) diagnostics: &'a mut Diagnostics,
-    pub(crate) sources: &'a mut SourceMap,
-    pub(crate) loader: &'a dyn Loader,
-}
 
 /// Names with a meaning of their own in objectives.
 const RESERVED: [&str; 5] = ["action", "state", "obs", "enabled", "none"];

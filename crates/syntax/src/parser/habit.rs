@@ -2,7 +2,7 @@
 
 use super::{Parse, Parser};
 use crate::ast::{ArithOp, CompareOp};
-use crate::operator::{Operator, TABLE};
+use crate::operator::Operator;
 use crate::token::Tok;
 
 const SYSTEM: &str = "a system is written `system S { state x: 0..3; action a; on a { x' = x + 1; } }`";
@@ -37,31 +37,6 @@ pub(super) fn instead_of_item(tok: Tok, text: &str) -> Option<&'static str> {
         (_, "ASSIGN" | "TRANS" | "next" | "transition" | "trans" | "when") => STEP,
         (_, "INIT" | "initial") => "initial states are written `init x == 0;`",
         (_, "DEFINE") => "labels are written `label NAME = x == 0;`",
-        _ => return None,
-    })
-}
-
-/// The sign of this language that looks like a character, if there is one.
-pub(crate) fn looks_like(c: char) -> Option<&'static str> {
-    if let Some(row) = TABLE.iter().find(|row| row.lookalikes.contains(c)) {
-        return Some(row.name);
-    }
-    Some(match c {
-        '“' | '”' | '„' | '＂' => "\"",
-        '‘' | '’' | '′' | '＇' | '´' | '`' => "'",
-        '…' | '‥' => "..",
-        '；' | '\u{37e}' => ";",
-        '：' | '∶' => ":",
-        '，' | '‚' => ",",
-        '（' => "(",
-        '）' => ")",
-        '［' => "[",
-        '］' => "]",
-        '｛' => "{",
-        '｝' => "}",
-        '＝' => "=",
-        '⊤' => "true",
-        '⊥' => "false",
         _ => return None,
     })
 }

@@ -255,11 +255,11 @@ fn ros_maps() {
     let map = problem.systems.first().and_then(|s| s.map.clone()).expect("a map");
     // The top picture row is y = 1; gray is unknown, and so an obstacle.
     assert_eq!((map.width, map.height, map.obstacles), (3, 2, vec![(1, 1), (2, 0)]));
-    let raw = crate::grid::pgm::read(b"P5 2 1 255\n\x00\xff", 10).expect("a picture");
+    let raw = crate::lower::grid::pgm::read(b"P5 2 1 255\n\x00\xff", 10).expect("a picture");
     assert_eq!((raw.at(0, 0), raw.at(1, 0)), (0, 255));
     for bad in [&b"P5 2 1 255\n\x00"[..], b"P5 2", b"P6 1 1 255\n000", b"P2 1 1 255\n256", b"", b"P2 9 9 9 9"]
     {
-        assert!(crate::grid::pgm::read(bad, 10).is_err());
+        assert!(crate::lower::grid::pgm::read(bad, 10).is_err());
     }
 }
 
