@@ -155,8 +155,8 @@ fn check_some_strategies(random: &model::Problem, brute: &Brute<'_>, typed: &Pro
         assert!(strategy.traces.iter().all(|t| t.actions.iter().all(|a| system.actions.contains(a))));
         let verdict = check(typed, objective, &strategy, &Budget::default());
         let expected = brute.refute(&chosen, claimed);
-        let holds = matches!(verdict, Ok(hyperplan_verify::Verdict::Holds));
-        let fails = matches!(verdict, Ok(hyperplan_verify::Verdict::Fails(_)));
+        let holds = matches!(verdict, Ok(hyperplan_verify::Check::Holds));
+        let fails = matches!(verdict, Ok(hyperplan_verify::Check::Fails(_)));
         assert_ne!(holds, fails, "seed {seed}: {verdict:?}\n{text}");
         assert_eq!(
             holds,

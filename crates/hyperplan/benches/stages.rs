@@ -128,7 +128,7 @@ fn verify_strategy(criterion: &mut Criterion, name: &str, _: &Case, problem: &Pr
     criterion.bench_function(&format!("verify/{name}"), |b| {
         b.iter(|| {
             let verdict = verify::check(problem, objective(problem), &strategy, &verify::Budget::default());
-            assert!(matches!(verdict, Ok(verify::Verdict::Holds)));
+            assert!(matches!(verdict, Ok(verify::Check::Holds)));
         });
     });
 }

@@ -2,7 +2,7 @@
 
 use crate::args::{self, ColorWhen};
 use crate::configuration;
-use crate::failure::{Failure, Outcome};
+use crate::failure::{Failure, Result};
 use crate::output::check_writable;
 use crate::report::Picture;
 use crate::signals;
@@ -20,7 +20,7 @@ pub(crate) struct Solve {
 }
 
 impl Solve {
-    pub(crate) fn new(args: &args::Solve) -> Outcome<Self> {
+    pub(crate) fn new(args: &args::Solve) -> Result<Self> {
         let plot = args.plot.as_deref().map(Picture::new).transpose()?;
         for path in args.plot.iter().chain(&args.save) {
             check_writable(path)?;
@@ -51,7 +51,7 @@ impl Solve {
 }
 
 /// A solver by name or command line.
-pub(crate) fn solver(text: &str) -> Outcome<Spec> {
+pub(crate) fn solver(text: &str) -> Result<Spec> {
     match solvers(text)? {
         (solver, rivals) if rivals.is_empty() => Ok(solver),
         _ => Err(Failure::input(format_args!("one solver is wanted here, not a list ({text})"))),
@@ -59,7 +59,7 @@ pub(crate) fn solver(text: &str) -> Outcome<Spec> {
 }
 
 /// One solver, and those that race it.
-fn solvers(text: &str) -> Outcome<(Spec, Vec<Spec>)> {
+fn solvers(text: &str) -> Result<(Spec, Vec<Spec>)> {
     // What is built in reads no configuration.
     let specs = match Spec::embedded(text.trim()) {
         Some(embedded) => embedded.map(|spec| vec![spec]),
@@ -96,7 +96,7 @@ pub(crate) fn status(typed: args::Status) -> Option<Status> {
 }
 
 /// A date as headers have it: the one that was given, that of `SOURCE_DATE_EPOCH`, or today's.
-pub(crate) fn date(given: Option<&str>) -> Outcome<String> {
+pub(crate) fn date(given: Option<&str>) -> Result<String> {
     let format = "%Y-%m-%d";
     let date = match (given, std::env::var("SOURCE_DATE_EPOCH")) {
         (Some(text), _) => NaiveDate::parse_from_str(text, format)
@@ -113,7 +113,7 @@ pub(crate) fn date(given: Option<&str>) -> Outcome<String> {
 }
 
 /// A name that fits on a line of a header.
-pub(crate) fn author(name: &str) -> Outcome<String> {
+pub(crate) fn author(name: &str) -> Result<String> {
     if name.trim().is_empty() || name.contains(|c: char| c.is_control() || "|\\".contains(c)) {
         return Err(Failure::input("--author takes a name on one line, without | and \\"));
     }
@@ -121,7 +121,7 @@ pub(crate) fn author(name: &str) -> Outcome<String> {
 }
 
 /// The end of the whole command, by time or by signal.
-pub(crate) fn deadline(timeout: Option<f64>) -> Outcome<Deadline> {
+pub(crate) fn deadline(timeout: Option<f64>) -> Result<Deadline> {
     let deadline = match timeout {
         None => Deadline::never(),
         // Too long to count is as good as no end.

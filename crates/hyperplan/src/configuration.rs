@@ -1,6 +1,6 @@
 //! Configuration files: where they are. What they say is for the solvers' catalog.
 
-use crate::failure::{Failure, Outcome};
+use crate::failure::{Failure, Result};
 use crate::load::read_source;
 use hyperplan_solver::Catalog;
 use std::env;
@@ -10,7 +10,7 @@ const NAME: &str = "hyperplan.toml";
 
 /// The solvers that can be named: hyperplan's own, those of the user's file, and those of the project's, which come
 /// first.
-pub(crate) fn catalog() -> Outcome<Catalog> {
+pub(crate) fn catalog() -> Result<Catalog> {
     let mut catalog = Catalog::default();
     for file in users().into_iter().chain(projects()) {
         let text = read_source(&file)?;

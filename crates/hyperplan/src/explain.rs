@@ -1,6 +1,6 @@
 //! What the planner tells, in the command's words: with the flags that help, and where evidence is kept.
 
-use crate::failure::{Failure, Status};
+use crate::failure::{Exit, Failure};
 use hyperplan_plan::{EncodeError, Error, Evidence, Fallen, Fault, Note, Reason, Unsupported, Wrong};
 use hyperplan_problem::answer::ReasonCode;
 use hyperplan_solver::new_query_file;
@@ -90,12 +90,12 @@ impl Why {
 }
 
 /// The exit status that an error means.
-pub(crate) fn status(error: &Error) -> Status {
+pub(crate) fn status(error: &Error) -> Exit {
     match error.fault() {
-        Fault::Request => Status::Input,
-        Fault::Time => Status::Undecided,
-        Fault::Solver => Status::Solver,
-        Fault::Ours => Status::Bug,
+        Fault::Request => Exit::Input,
+        Fault::Time => Exit::Undecided,
+        Fault::Solver => Exit::Solver,
+        Fault::Ours => Exit::Bug,
     }
 }
 

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 /// Exit statuses, as the README lists them; the largest of several counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Status {
+pub(crate) enum Exit {
     /// Realizable, or the property holds, or the command did what it was to do.
     Good = 0,
     /// Unrealizable, or the property does not hold.
@@ -20,8 +20,8 @@ pub(crate) enum Status {
     Bug = 5,
 }
 
-impl From<Status> for ExitCode {
-    fn from(status: Status) -> ExitCode {
+impl From<Exit> for ExitCode {
+    fn from(status: Exit) -> ExitCode {
         ExitCode::from(status as u8)
     }
 }
@@ -30,7 +30,7 @@ impl From<Status> for ExitCode {
 #[derive(Debug)]
 pub(crate) struct Failure {
     /// The exit status.
-    pub(crate) status: Status,
+    pub(crate) status: Exit,
     /// The message; empty where everything was said already, as diagnostics.
     pub(crate) message: String,
 }
@@ -38,14 +38,14 @@ pub(crate) struct Failure {
 impl Failure {
     /// Bad usage or input.
     pub(crate) fn input(message: impl fmt::Display) -> Self {
-        Failure { status: Status::Input, message: message.to_string() }
+        Failure { status: Exit::Input, message: message.to_string() }
     }
 
     /// Bad input, and the messages were printed.
     pub(crate) fn said() -> Self {
-        Failure { status: Status::Input, message: String::new() }
+        Failure { status: Exit::Input, message: String::new() }
     }
 }
 
 /// A result of a command or a part of one.
-pub(crate) type Outcome<T = Status> = Result<T, Failure>;
+pub(crate) type Result<T = Exit, E = Failure> = std::result::Result<T, E>;

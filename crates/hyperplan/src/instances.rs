@@ -1,7 +1,7 @@
 //! The instances of a comparison: which files, and what is asked of each.
 
 use crate::args;
-use crate::failure::{Failure, Outcome};
+use crate::failure::{Failure, Result};
 use crate::load::{Beside, read_bytes, reason};
 use crate::output::Output;
 use crate::report;
@@ -20,7 +20,7 @@ const COMBINATIONS: usize = 100_000;
 
 /// All instances, in the order of the files. Files that cannot be read are all told of, and then nothing is run, unless
 /// they are to be left out.
-pub(crate) fn instances(args: &args::Compare, out: &Output) -> Outcome<Vec<Arc<Instance>>> {
+pub(crate) fn instances(args: &args::Compare, out: &Output) -> Result<Vec<Arc<Instance>>> {
     let files = files(&args.files)?;
     let sets = combinations(&args.set)?;
     let mut instances = Vec::new();
@@ -57,7 +57,7 @@ pub(crate) fn instances(args: &args::Compare, out: &Output) -> Outcome<Vec<Arc<I
 }
 
 /// The files that arguments mean, each once, in the order of the arguments, those of a folder or a pattern by name.
-fn files(arguments: &[String]) -> Outcome<Vec<PathBuf>> {
+fn files(arguments: &[String]) -> Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     let mut known = BTreeSet::new();
     for argument in arguments {
@@ -79,7 +79,7 @@ fn files(arguments: &[String]) -> Outcome<Vec<PathBuf>> {
     Ok(files)
 }
 
-fn expand(path: &Path, argument: &str) -> Outcome<Vec<PathBuf>> {
+fn expand(path: &Path, argument: &str) -> Result<Vec<PathBuf>> {
     let cannot =
         |path: &Path, why: String| Failure::input(format_args!("cannot read {}: {why}", path.display()));
     if path.is_dir() {
@@ -103,7 +103,7 @@ fn expand(path: &Path, argument: &str) -> Outcome<Vec<PathBuf>> {
 }
 
 /// The problem and SMT-LIB files in a folder and those below it. Links to folders are not followed.
-fn walk(folder: &Path) -> Outcome<Vec<PathBuf>> {
+fn walk(folder: &Path) -> Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     let mut folders = vec![folder.to_owned()];
     while let Some(folder) = folders.pop() {
@@ -131,7 +131,7 @@ fn is_query(path: &Path) -> bool {
 }
 
 /// Every combination of the constants' values.
-fn combinations(settings: &[args::Settings]) -> Outcome<Vec<Vec<(String, String)>>> {
+fn combinations(settings: &[args::Settings]) -> Result<Vec<Vec<(String, String)>>> {
     let mut combinations = vec![Vec::new()];
     for args::Settings { name, values } in settings {
         if combinations.len().saturating_mul(values.len()) > COMBINATIONS {
@@ -155,7 +155,7 @@ fn of_file(
     objectives: &[String],
     seen: &mut BTreeSet<String>,
     out: Option<&Output>,
-) -> Outcome<Vec<Instance>> {
+) -> Result<Vec<Instance>> {
     let cannot = |why: String| Failure::input(format_args!("cannot read {}: {why}", file.display()));
     let name = file.to_str().ok_or_else(|| cannot("its name is not in UTF-8".to_owned()))?;
     let bytes = read_bytes(file).map_err(|error| cannot(reason(&error)))?;
@@ -180,7 +180,7 @@ fn of_file(
     }
     let text = std::str::from_utf8(&bytes).map_err(|_| cannot("it is not in UTF-8".to_owned()))?;
     let meanings = sets.iter().map(|set| Ok((set, lower(file, text, set, out)?)));
-    let meanings: Vec<(&Vec<(String, String)>, Meaning)> = meanings.collect::<Outcome<_>>()?;
+    let meanings: Vec<(&Vec<(String, String)>, Meaning)> = meanings.collect::<Result<_>>()?;
     let known = known(file, text, &meanings);
     let mut found = Vec::new();
     for (set, Meaning { problem, consts, others }) in &meanings {
@@ -247,7 +247,7 @@ struct Meaning {
     others: String,
 }
 
-fn lower(file: &Path, text: &str, set: &[(String, String)], out: Option<&Output>) -> Outcome<Meaning> {
+fn lower(file: &Path, text: &str, set: &[(String, String)], out: Option<&Output>) -> Result<Meaning> {
     let (lowered, sources, others) = read_with(file, text, set);
     if lowered.has_errors() {
         let errors: Vec<Diagnostic> = lowered.diagnostics.into_iter().filter(Diagnostic::is_error).collect();

@@ -1,7 +1,7 @@
 //! Files into problems and strategies.
 
 use crate::args;
-use crate::failure::{Failure, Outcome};
+use crate::failure::{Failure, Result};
 use crate::output::Output;
 use crate::report;
 use hyperplan_problem::answer::{StrategyFile, to_strategy};
@@ -26,7 +26,7 @@ pub(crate) struct Loaded {
 
 impl Loaded {
     /// Reads a problem file; its errors and warnings are printed.
-    pub(crate) fn read(args: &args::Problem, out: &Output) -> Outcome<Loaded> {
+    pub(crate) fn read(args: &args::Problem, out: &Output) -> Result<Loaded> {
         let start = Instant::now();
         let text = read_source(&args.file)?;
         Self::with_consts(args, &text, start, out).map(|(loaded, _)| loaded)
@@ -38,7 +38,7 @@ impl Loaded {
         text: &str,
         start: Instant,
         out: &Output,
-    ) -> Outcome<(Loaded, Consts)> {
+    ) -> Result<(Loaded, Consts)> {
         let (lowered, sources) = Self::lower(args, text);
         report::diagnostics(&sources, &lowered.diagnostics, out);
         if lowered.has_errors() {
@@ -58,7 +58,7 @@ impl Loaded {
     }
 
     /// The objectives that are meant: the one of that name, all for `all`, and without a name the only one.
-    pub(crate) fn selected(&self, name: Option<&str>, all_by_default: bool) -> Outcome<Vec<&Objective>> {
+    pub(crate) fn selected(&self, name: Option<&str>, all_by_default: bool) -> Result<Vec<&Objective>> {
         let objectives: Vec<&Objective> = self.problem.objectives.iter().collect();
         let names: Vec<&str> = objectives.iter().map(|o| o.name.as_str()).collect();
         match name {
@@ -119,7 +119,7 @@ impl Loader for Beside {
 }
 
 /// The text of a problem file.
-pub(crate) fn read_source(path: &Path) -> Outcome<String> {
+pub(crate) fn read_source(path: &Path) -> Result<String> {
     let cannot = |why: String| Failure::input(format_args!("cannot read {}: {why}", path.display()));
     let bytes = read_bytes(path).map_err(|e| cannot(reason(&e)))?;
     String::from_utf8(bytes).map_err(|error| {
@@ -162,7 +162,7 @@ pub(crate) struct Given {
 
 impl Given {
     /// Reads a strategy file.
-    pub(crate) fn read(path: &Path) -> Outcome<Given> {
+    pub(crate) fn read(path: &Path) -> Result<Given> {
         let name = path.display().to_string();
         let answers = StrategyFile::read_all(&read_source(path)?)
             .map_err(|e| Failure::input(format_args!("{name} is no strategy: {e}")))?;
@@ -177,7 +177,7 @@ impl Given {
         &self,
         loaded: &'a Loaded,
         name: Option<&str>,
-    ) -> Outcome<Vec<(&'a Objective, Strategy)>> {
+    ) -> Result<Vec<(&'a Objective, Strategy)>> {
         let failure = |message: String| Failure::input(format_args!("{}: {message}", self.name));
         let wanted = name.filter(|n| *n != "all");
         let fits = |answer: &&StrategyFile| match (wanted, &answer.objective) {

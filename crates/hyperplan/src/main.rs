@@ -6,17 +6,17 @@ mod config;
 mod configuration;
 mod explain;
 mod failure;
-mod family;
 mod instances;
 mod load;
 mod output;
+mod parameter;
 mod progress;
 mod report;
 mod signals;
 mod store;
 
 use clap::Parser as _;
-use failure::{Outcome, Status};
+use failure::{Exit, Result};
 use output::Output;
 use std::process::ExitCode;
 
@@ -30,13 +30,13 @@ fn main() -> ExitCode {
         // Its stack is the same on all systems.
         let worker = std::thread::Builder::new().spawn_scoped(scope, run);
         // A thread that panicked has said so; that is our bug.
-        worker.map_or_else(|_| run(), |w| w.join().unwrap_or(ExitCode::from(Status::Bug)))
+        worker.map_or_else(|_| run(), |w| w.join().unwrap_or(ExitCode::from(Exit::Bug)))
     })
 }
 
 /// Help and version go to standard output and are no failure; everything else is bad usage.
 fn usage(error: &clap::Error) -> ExitCode {
-    let status = if error.use_stderr() { Status::Input } else { Status::Good };
+    let status = if error.use_stderr() { Exit::Input } else { Exit::Good };
     // Nothing is left to do if it cannot be printed.
     let _ = error.print();
     status.into()
@@ -49,7 +49,7 @@ fn run(cli: &args::Cli) -> ExitCode {
     signals::status().unwrap_or_else(|| status.into())
 }
 
-fn finish(out: &mut Output, result: Outcome) -> Status {
+fn finish(out: &mut Output, result: Result) -> Exit {
     let result = result.and_then(|status| out.flush().map(|()| status));
     result.unwrap_or_else(|failure| {
         if !failure.message.is_empty() {

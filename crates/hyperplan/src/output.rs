@@ -1,6 +1,6 @@
 //! Standard output and standard error: results go to the one, everything else to the other.
 
-use crate::failure::{Failure, Outcome};
+use crate::failure::{Failure, Result};
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
@@ -43,14 +43,14 @@ impl Output {
     }
 
     /// Prints a result and a line break.
-    pub(crate) fn line(&mut self, text: impl Display) -> Outcome<()> {
+    pub(crate) fn line(&mut self, text: impl Display) -> Result<()> {
         self.write(|out| writeln!(out, "{text}"))?;
         // A result that took minutes should be seen at once.
         self.flush()
     }
 
     /// Prints a result as it is.
-    pub(crate) fn write(&mut self, print: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Outcome<()> {
+    pub(crate) fn write(&mut self, print: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
         if self.closed {
             return Ok(());
         }
@@ -59,7 +59,7 @@ impl Output {
     }
 
     /// Sends what is still in the buffer.
-    pub(crate) fn flush(&mut self) -> Outcome<()> {
+    pub(crate) fn flush(&mut self) -> Result<()> {
         if self.closed {
             return Ok(());
         }
@@ -67,7 +67,7 @@ impl Output {
         self.settle(done)
     }
 
-    fn settle(&mut self, done: io::Result<()>) -> Outcome<()> {
+    fn settle(&mut self, done: io::Result<()>) -> Result<()> {
         match done {
             Err(e) if e.kind() == io::ErrorKind::BrokenPipe => {
                 self.closed = true;
@@ -91,7 +91,7 @@ impl Output {
 }
 
 /// Writes a file.
-pub(crate) fn write_file(path: &Path, contents: &[u8]) -> Outcome<()> {
+pub(crate) fn write_file(path: &Path, contents: &[u8]) -> Result<()> {
     std::fs::write(path, contents).map_err(|e| cannot_write(path, &e))
 }
 
@@ -101,7 +101,7 @@ pub(crate) fn cannot_write(path: &Path, error: &io::Error) -> Failure {
 }
 
 /// Refuses a file that could not be written after all the work.
-pub(crate) fn check_writable(path: &Path) -> Outcome<()> {
+pub(crate) fn check_writable(path: &Path) -> Result<()> {
     if path.is_dir() {
         return Err(Failure::input(format!("cannot write {}: it is a directory", path.display())));
     }

@@ -1,6 +1,6 @@
 //! How results and messages are printed, where several commands do it alike.
 
-use crate::failure::{Failure, Outcome, Status};
+use crate::failure::{Exit, Failure, Result};
 use crate::output::{Output, write_file};
 use hyperplan_render::{Scene, TextStyle, svg, text_map};
 use hyperplan_syntax::{Diagnostic, SourceMap, render};
@@ -8,10 +8,10 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 
 /// One line of JSON.
-pub(crate) fn json(value: &impl Serialize) -> Outcome<String> {
+pub(crate) fn json(value: &impl Serialize) -> Result<String> {
     // Our own structs have string keys and finite numbers.
     serde_json::to_string(value)
-        .map_err(|e| Failure { status: Status::Bug, message: format!("cannot write JSON: {e}") })
+        .map_err(|e| Failure { status: Exit::Bug, message: format!("cannot write JSON: {e}") })
 }
 
 /// Width of messages. The same on every terminal, so that messages can be compared.
@@ -55,7 +55,7 @@ enum Kind {
 
 impl Picture {
     /// Refuses names that do not end in a known way.
-    pub(crate) fn new(path: &Path) -> Outcome<Self> {
+    pub(crate) fn new(path: &Path) -> Result<Self> {
         let kind = match path.extension().and_then(|e| e.to_str()) {
             Some("svg") => Kind::Svg,
             Some("txt") => Kind::Text,
@@ -77,7 +77,7 @@ impl Picture {
 }
 
 /// Draws into a file.
-pub(crate) fn write_picture(scene: Scene<'_>, picture: &Picture) -> Outcome<()> {
+pub(crate) fn write_picture(scene: Scene<'_>, picture: &Picture) -> Result<()> {
     let drawn = match picture.kind {
         Kind::Svg => svg(scene),
         Kind::Text => text_map(scene, TextStyle::default()),

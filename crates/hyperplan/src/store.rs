@@ -1,6 +1,6 @@
 //! The folder of a family: its log, and files that are there whole or not at all.
 
-use crate::failure::{Failure, Outcome};
+use crate::failure::{Failure, Result};
 use crate::output::cannot_write;
 use hyperplan_family::{Head, Log, Manifest, Record, sha256};
 use std::collections::BTreeSet;
@@ -22,7 +22,7 @@ pub(crate) struct Store {
 impl Store {
     /// Opens a folder for a family, and makes it if there is none. A folder of another family is refused, and so is
     /// one that another process works on.
-    pub(crate) fn open(folder: &Path, head: Head) -> Outcome<Self> {
+    pub(crate) fn open(folder: &Path, head: Head) -> Result<Self> {
         fs::create_dir_all(folder).map_err(|e| cannot_write(folder, &e))?;
         let path = folder.join(LOG);
         let foreign =
@@ -79,7 +79,7 @@ impl Store {
     }
 
     /// Adds a line to the log.
-    pub(crate) fn note(&mut self, record: &Record) -> Outcome<()> {
+    pub(crate) fn note(&mut self, record: &Record) -> Result<()> {
         let line = record.line().map_err(|e| Failure::input(format_args!("{e}")))?;
         // In one piece, so that what is cut off is at most a line.
         self.log.write_all(line.as_bytes()).map_err(|e| cannot_write(&self.folder.join(LOG), &e))?;
@@ -99,7 +99,7 @@ impl Store {
     }
 
     /// Writes the manifest, and removes files that are like others.
-    pub(crate) fn finish(&self) -> Outcome<Manifest> {
+    pub(crate) fn finish(&self) -> Result<Manifest> {
         let (manifest, alike) = Manifest::new(self.head.clone(), &self.past.records);
         for file in alike {
             // It may be gone since an earlier run.
@@ -114,7 +114,7 @@ impl Store {
 }
 
 /// Writes a file of a folder so that it is there whole or not at all, whenever this process ends.
-pub(crate) fn write_whole(folder: &Path, file: &str, contents: &[u8]) -> Outcome<()> {
+pub(crate) fn write_whole(folder: &Path, file: &str, contents: &[u8]) -> Result<()> {
     let path = folder.join(file);
     let write = || {
         let parent = path.parent().unwrap_or(folder);

@@ -23,8 +23,8 @@ pub(crate) fn confirm(
         verdict => verdict.map_err(|error| Error::Bug(error.to_string()))?,
     };
     match verdict {
-        verify::Verdict::Holds => Ok(Verified::BySearch),
-        verify::Verdict::Fails(defeat) => {
+        verify::Check::Holds => Ok(Verified::BySearch),
+        verify::Check::Fails(defeat) => {
             let what = defeat.describe(objective);
             // If our own encoding agrees with the checker, the solver said something wrong.
             Err(match defeated(encoder, config, strategy) {
@@ -33,7 +33,7 @@ pub(crate) fn confirm(
             }
             .into())
         }
-        verify::Verdict::TooLarge { .. } => match defeated(encoder, config, strategy)? {
+        verify::Check::TooLarge { .. } => match defeated(encoder, config, strategy)? {
             false => Ok(Verified::BySolver),
             true => Err(Error::Bug("a second query defeats it".into()).into()),
         },

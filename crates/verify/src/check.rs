@@ -3,7 +3,7 @@
 use crate::graph::Ahead;
 use crate::horizon::horizon;
 use crate::joint::JointMove;
-use crate::report::{Budget, Defeat, Error, Stop, Verdict};
+use crate::report::{Budget, Check, Defeat, Error, Stop};
 use crate::run::Outcome;
 use crate::search::{Fixed, Search};
 use hyperplan_problem::{Mode, Objective, Problem, Quantifier, Strategy, Trace};
@@ -18,7 +18,7 @@ pub fn check(
     objective: &Objective,
     strategy: &Strategy,
     budget: &Budget,
-) -> Result<Verdict, Error> {
+) -> Result<Check, Error> {
     let fixed = objective.leading_block().len();
     if fixed == 0 {
         return Err(Error::Malformed { what: "an objective has no path variable" });
@@ -28,8 +28,8 @@ pub fn check(
         Err(stop) => return too_large(stop, None, budget),
     };
     match checked(&mut search, objective, strategy) {
-        Ok(None) => Ok(Verdict::Holds),
-        Ok(Some(defeat)) => Ok(Verdict::Fails(defeat)),
+        Ok(None) => Ok(Check::Holds),
+        Ok(Some(defeat)) => Ok(Check::Fails(defeat)),
         Err(stop) => too_large(stop, Some(&search), budget),
     }
 }
@@ -51,11 +51,11 @@ pub fn decide(problem: &Problem, objective: &Objective, budget: &Budget) -> Resu
     }
 }
 
-fn too_large(stop: Stop, search: Option<&Search<'_>>, budget: &Budget) -> Result<Verdict, Error> {
+fn too_large(stop: Stop, search: Option<&Search<'_>>, budget: &Budget) -> Result<Check, Error> {
     match stop {
         Stop::Budget => {
             let reached = search.map(Search::reached).unwrap_or_default();
-            Ok(Verdict::TooLarge { budget: *budget, reached })
+            Ok(Check::TooLarge { budget: *budget, reached })
         }
         Stop::Error(error) => Err(error),
     }

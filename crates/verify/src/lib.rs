@@ -75,7 +75,7 @@ mod valuation;
 mod value;
 
 pub use check::{check, decide};
-pub use report::{Budget, Defeat, Error, Reached, Verdict};
+pub use report::{Budget, Check, Defeat, Error, Reached};
 
 #[cfg(doc)]
 use hyperplan_problem::Mode;

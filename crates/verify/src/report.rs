@@ -38,7 +38,7 @@ pub struct Reached {
 
 /// The outcome of a check.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum Check {
     /// The strategy does what it is claimed to do.
     Holds,
     /// It does not.

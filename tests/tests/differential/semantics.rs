@@ -7,7 +7,7 @@ use hyperplan_tests::brute::{Brute, Path};
 use hyperplan_tests::model::{Problem, Semantics};
 use hyperplan_tests::random::{Random, halting_problem, problem_with_semantics};
 use hyperplan_tests::say;
-use hyperplan_verify::{Budget, Verdict, check, decide};
+use hyperplan_verify::{Budget, Check, check, decide};
 
 /// Some choices of paths.
 fn tuples<'b>(brute: &'b Brute<'_>, paths: usize, random: &mut Random) -> Vec<Vec<&'b Path>> {
@@ -63,7 +63,7 @@ pub(super) fn checker_reads(cases: u64) {
             let verdict = check(&typed, objective, &strategy, &Budget::default());
             let expected = brute.holds_under(semantics, &problem.formula, &tuple);
             tally.add(expected);
-            let holds = matches!(verdict, Ok(Verdict::Holds));
+            let holds = matches!(verdict, Ok(Check::Holds));
             assert_eq!(holds, expected, "seed {seed}: {verdict:?} for {tuple:?}\n{text}");
         }
     }

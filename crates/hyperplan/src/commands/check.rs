@@ -2,14 +2,14 @@
 
 use crate::args;
 use crate::config;
-use crate::failure::{Outcome, Status};
+use crate::failure::{Exit, Result};
 use crate::load::{Loaded, read_source};
 use crate::output::Output;
 use crate::report;
 use hyperplan_plan::{Budget, Lints};
 use hyperplan_syntax::{SourceId, parse, print, to_json};
 
-pub(crate) fn run(args: &args::Check, verbose: bool, out: &mut Output) -> Outcome {
+pub(crate) fn run(args: &args::Check, verbose: bool, out: &mut Output) -> Result {
     let deadline = config::deadline(args.timeout)?;
     let file = args.problem.file.display().to_string();
     let source = read_source(&args.problem.file)?;
@@ -17,7 +17,7 @@ pub(crate) fn run(args: &args::Check, verbose: bool, out: &mut Output) -> Outcom
     let good = !lowered.has_errors();
     if args.print {
         report::diagnostics(&sources, &lowered.diagnostics, out);
-        return if good { formatted(&source, out) } else { Ok(Status::Input) };
+        return if good { formatted(&source, out) } else { Ok(Exit::Input) };
     }
     let mut lints = Lints::default();
     if good {
@@ -58,7 +58,7 @@ pub(crate) fn run(args: &args::Check, verbose: bool, out: &mut Output) -> Outcom
         out.line(format_args!("{file}: {systems}, {objectives}, {}{more}", count(warnings, "warning")))?;
     }
     let denied = args.deny_warnings && warnings > 0;
-    Ok(if good && !denied { Status::Good } else { Status::Input })
+    Ok(if good && !denied { Exit::Good } else { Exit::Input })
 }
 
 fn add(all: &mut Lints, mut more: Lints) {
@@ -76,10 +76,10 @@ fn count(n: usize, what: &str) -> String {
 }
 
 /// Prints the file as its syntax tree says, with its comments.
-fn formatted(text: &str, out: &mut Output) -> Outcome {
+fn formatted(text: &str, out: &mut Output) -> Result {
     let (file, _) = parse(SourceId(0), text);
     let printed = print(&file, text);
     out.write(|out| out.write_all(printed.as_bytes()))?;
     out.flush()?;
-    Ok(Status::Good)
+    Ok(Exit::Good)
 }

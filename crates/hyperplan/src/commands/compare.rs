@@ -3,7 +3,7 @@
 use crate::args;
 use crate::config;
 use crate::configuration;
-use crate::failure::{Failure, Outcome, Status};
+use crate::failure::{Exit, Failure, Result};
 use crate::instances::instances;
 use crate::output::Output;
 use crate::progress::Progress;
@@ -25,7 +25,7 @@ const LOG: &str = "runs.jsonl";
 /// More runs than this are hardly meant.
 const MOST_RUNS: u64 = 1_000_000;
 
-pub(crate) fn run(args: &args::Compare, verbose: bool, out: &mut Output) -> Outcome {
+pub(crate) fn run(args: &args::Compare, verbose: bool, out: &mut Output) -> Result {
     if args.files.is_empty() {
         return again(&args.out, out);
     }
@@ -85,7 +85,7 @@ pub(crate) fn run(args: &args::Compare, verbose: bool, out: &mut Output) -> Outc
         Ok(true) => {}
         Ok(false) => {
             out.error(format_args!("interrupted: {kept}"));
-            return Ok(Status::Undecided);
+            return Ok(Exit::Undecided);
         }
         Err(failure) => return Err(Failure { message: format!("{}; {kept}", failure.message), ..failure }),
     }
@@ -112,7 +112,7 @@ fn do_all(
     log: &mut Log,
     done: &mut BTreeMap<String, Record>,
     mut progress: Progress<'_>,
-) -> Outcome<bool> {
+) -> Result<bool> {
     let cancelled = Arc::new(AtomicBool::new(false));
     signals::watch(&cancelled);
     let labels: BTreeMap<&str, String> = missing.iter().map(|run| (run.key.as_str(), run.label())).collect();
@@ -153,7 +153,7 @@ fn by_key(records: Vec<Record>, runs: &[Run]) -> BTreeMap<String, Record> {
 }
 
 /// Reports what is in the log, without any run: the last of each where it was done again after a change.
-fn again(folder: &Path, out: &mut Output) -> Outcome {
+fn again(folder: &Path, out: &mut Output) -> Result {
     let path = folder.join(LOG);
     if !path.is_file() {
         return Err(Failure::input(format_args!(
@@ -180,7 +180,7 @@ fn place(record: &Record) -> impl Ord + use<> {
 }
 
 /// Prints what is wrong and the scores, and writes all reports.
-fn report(records: &[Record], folder: &Path, out: &mut Output) -> Outcome {
+fn report(records: &[Record], folder: &Path, out: &mut Output) -> Result {
     let summary = summary(records, out.width());
     out.line(summary.trim_end())?;
     write_all(records, folder).map_err(|error| {
@@ -188,9 +188,9 @@ fn report(records: &[Record], folder: &Path, out: &mut Output) -> Outcome {
     })?;
     out.remark(format_args!("note: the whole report is {}", folder.join("report.html").display()));
     Ok(match judge(records).fault() {
-        None => Status::Good,
-        Some(Fault::Solver | Fault::Status) => Status::Solver,
-        Some(Fault::Ours) => Status::Bug,
+        None => Exit::Good,
+        Some(Fault::Solver | Fault::Status) => Exit::Solver,
+        Some(Fault::Ours) => Exit::Bug,
     })
 }
 
@@ -201,7 +201,7 @@ fn benchexec(
     solvers: &[Arc<Candidate>],
     ways: &Ways,
     out: &mut Output,
-) -> Outcome {
+) -> Result {
     let problems: Vec<Problem> = instances
         .iter()
         .filter_map(|instance| match &instance.kind {
@@ -249,7 +249,7 @@ fn benchexec(
         counted(problems.len(), "task"),
         counted(configurations.len(), "run definition")
     ));
-    Ok(Status::Good)
+    Ok(Exit::Good)
 }
 
 fn counted(number: usize, what: &str) -> String {
@@ -257,13 +257,13 @@ fn counted(number: usize, what: &str) -> String {
 }
 
 /// Does the job on standard input, for [`run`].
-pub(crate) fn supervise() -> Outcome {
+pub(crate) fn supervise() -> Result {
     hyperplan_compare::supervise().map_err(Failure::input)?;
-    Ok(Status::Good)
+    Ok(Exit::Good)
 }
 
 /// What was typed, checked.
-fn ways(args: &args::Compare) -> Outcome<Ways> {
+fn ways(args: &args::Compare) -> Result<Ways> {
     for (option, seconds) in [("--timeout", Some(args.timeout)), ("--cpu", args.cpu)] {
         if let Some(seconds) = seconds.filter(|seconds| !(seconds.is_finite() && *seconds > 0.0)) {
             return Err(Failure::input(format_args!("{option} {seconds} is not a time to work in")));
@@ -289,7 +289,7 @@ fn unique<T: Clone + Ord>(values: impl Iterator<Item = T>) -> Vec<T> {
 }
 
 /// The solvers that are meant, each once: all of them have to be there.
-fn candidates(solvers: Option<&str>) -> Outcome<Vec<Arc<Candidate>>> {
+fn candidates(solvers: Option<&str>) -> Result<Vec<Arc<Candidate>>> {
     let catalog = configuration::catalog()?;
     let specs = match solvers {
         None => catalog.installed(),
@@ -302,7 +302,7 @@ fn candidates(solvers: Option<&str>) -> Outcome<Vec<Arc<Candidate>>> {
             continue;
         }
         let standalone = catalog.standalone(&spec).map_err(|error| Failure {
-            status: if matches!(error, Error::Missing { .. }) { Status::Solver } else { Status::Input },
+            status: if matches!(error, Error::Missing { .. }) { Exit::Solver } else { Exit::Input },
             message: error.to_string(),
         })?;
         let version = match &standalone {
@@ -317,7 +317,7 @@ fn candidates(solvers: Option<&str>) -> Outcome<Vec<Arc<Candidate>>> {
 }
 
 /// A digest of the program: the version does not change with every change of the code.
-fn build(program: &Path) -> Outcome<String> {
+fn build(program: &Path) -> Result<String> {
     let cannot = |error| Failure::input(format_args!("cannot read {}: {error}", program.display()));
     Ok(sha256(&std::fs::read(program).map_err(cannot)?))
 }

@@ -3,7 +3,7 @@
 use crate::args;
 use crate::config;
 use crate::explain::Explain;
-use crate::failure::{Failure, Outcome, Status};
+use crate::failure::{Exit, Failure, Result};
 use crate::load::{Consts, Loaded, read_source};
 use crate::output::{Output, cannot_write, check_writable};
 use hyperplan_plan::{EmitConfig, Emitted, Limits, Quantifiers, States, emit};
@@ -16,10 +16,10 @@ use std::time::Instant;
 /// The most values that `--each` takes.
 const MOST_VALUES: i64 = 100_000;
 
-pub(crate) fn run(args: &args::Emit, file: &Path, out: &mut Output) -> Outcome {
+pub(crate) fn run(args: &args::Emit, file: &Path, out: &mut Output) -> Result {
     let common = common(args, &config::date(args.date.as_deref())?)?;
     let text = read_source(file)?;
-    let (mut target, mut worst) = (None, Status::Good);
+    let (mut target, mut worst) = (None, Exit::Good);
     for setting in settings(args)? {
         let mut set = args.set.clone();
         set.extend(setting.clone());
@@ -58,7 +58,7 @@ pub(crate) fn run(args: &args::Emit, file: &Path, out: &mut Output) -> Outcome {
 }
 
 /// What all benchmarks of a command have in common.
-pub(super) fn common(args: &args::Emit, date: &str) -> Outcome<EmitConfig> {
+pub(super) fn common(args: &args::Emit, date: &str) -> Result<EmitConfig> {
     let config = EmitConfig {
         solver: args.solver.as_deref().map(config::solver).transpose()?,
         track: config::track(args.track),
@@ -100,7 +100,7 @@ fn remarks(loaded: &Loaded, consts: &Consts) -> Vec<String> {
 type Setting = (String, String);
 
 /// The values of `--each`, or the file as it is.
-fn settings(args: &args::Emit) -> Outcome<Vec<Option<Setting>>> {
+fn settings(args: &args::Emit) -> Result<Vec<Option<Setting>>> {
     let Some((constant, lo, hi)) = &args.each else { return Ok(vec![None]) };
     if hi - lo >= MOST_VALUES {
         return Err(Failure::input(format_args!(
@@ -141,7 +141,7 @@ enum Target {
 }
 
 impl Target {
-    fn new(output: Option<&Path>, several: bool) -> Outcome<Self> {
+    fn new(output: Option<&Path>, several: bool) -> Result<Self> {
         let Some(path) = output else {
             if several {
                 return Err(Failure::input("several files need a directory: -o DIR"));
@@ -166,7 +166,7 @@ impl Target {
         Ok(Target::File(path.to_owned()))
     }
 
-    fn write(&self, name: &str, emitted: &mut Emitted, out: &mut Output) -> Outcome<()> {
+    fn write(&self, name: &str, emitted: &mut Emitted, out: &mut Output) -> Result<()> {
         match self {
             Target::Standard => out.write(|w| emitted.write(w)),
             Target::File(path) => write_to(path, emitted, out),
@@ -179,7 +179,7 @@ impl Target {
 pub(super) const LARGEST: u64 = 50_000_000;
 
 /// Writes a file as a whole or not at all; what is no file, such as a device, as it comes.
-fn write_to(path: &Path, emitted: &mut Emitted, out: &Output) -> Outcome<()> {
+fn write_to(path: &Path, emitted: &mut Emitted, out: &Output) -> Result<()> {
     let cannot = |e: std::io::Error| cannot_write(path, &e);
     if std::fs::metadata(path).is_ok_and(|known| !known.is_file()) {
         let mut device = BufWriter::new(File::create(path).map_err(cannot)?);

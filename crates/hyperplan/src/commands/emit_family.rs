@@ -5,7 +5,7 @@ mod case;
 use super::emit;
 use crate::args;
 use crate::config;
-use crate::failure::{Failure, Outcome, Status};
+use crate::failure::{Exit, Failure, Result};
 use crate::output::Output;
 use crate::store::Store;
 use case::One;
@@ -18,7 +18,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::Duration;
 
-pub(crate) fn run(args: &args::Emit, out: &mut Output) -> Outcome {
+pub(crate) fn run(args: &args::Emit, out: &mut Output) -> Result {
     let Some(folder) = &args.family.folder else {
         return Err(Failure::input("expected a problem file, or --family DIR"));
     };
@@ -47,9 +47,9 @@ pub(crate) fn run(args: &args::Emit, out: &mut Output) -> Outcome {
     ))?;
     if work.deadline.passed() {
         out.remark("note: not all was done; run it again to go on");
-        return Ok(Status::Undecided);
+        return Ok(Exit::Undecided);
     }
-    Ok(Status::Good)
+    Ok(Exit::Good)
 }
 
 /// What is to be done.
@@ -67,7 +67,7 @@ struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
-    fn new(args: &args::Emit, folder: &'a Path) -> Outcome<Self> {
+    fn new(args: &args::Emit, folder: &'a Path) -> Result<Self> {
         let wanted = &args.family;
         let family = Family {
             sizes: once(&wanted.sizes),
@@ -115,7 +115,7 @@ impl<'a> Work<'a> {
     }
 
     /// Works through all cases, several at a time; what comes of them is noted here, in the order in which it comes.
-    fn run(&self, store: &mut Store, jobs: Option<usize>, out: &Output) -> Outcome<()> {
+    fn run(&self, store: &mut Store, jobs: Option<usize>, out: &Output) -> Result<()> {
         let cases: Vec<Case> = self.family.cases().collect();
         let done = store.done();
         let least: Vec<Option<Option<u32>>> =
@@ -152,11 +152,11 @@ impl<'a> Work<'a> {
 /// What a worker says.
 enum Note {
     Record(Box<Record>),
-    Ended(Outcome<()>),
+    Ended(Result<()>),
 }
 
 /// Notes what workers say until all have ended. After the first failure they are told to stop.
-fn collect(from: &Receiver<Note>, store: &mut Store, bar: &ProgressBar, part: &Deadline) -> Outcome<()> {
+fn collect(from: &Receiver<Note>, store: &mut Store, bar: &ProgressBar, part: &Deadline) -> Result<()> {
     let mut result = Ok(());
     for note in from {
         let ended = match note {

@@ -1,7 +1,7 @@
 //! `hyperplan horizon`: how much of each path an objective reads.
 
 use crate::args;
-use crate::failure::{Outcome, Status};
+use crate::failure::{Exit, Result};
 use crate::load::Loaded;
 use crate::output::Output;
 use hyperplan_horizon::{Horizon, horizons};
@@ -9,7 +9,7 @@ use hyperplan_problem::answer::Ordered;
 use hyperplan_problem::{FormulaId, Mode, Objective, Semantics};
 use serde::Serialize;
 
-pub(crate) fn run(args: &args::Horizon, out: &mut Output) -> Outcome {
+pub(crate) fn run(args: &args::Horizon, out: &mut Output) -> Result {
     let loaded = Loaded::read(&args.problem, out)?;
     for objective in loaded.selected(args.selection.objective.as_deref(), true)? {
         let report = Report::new(&loaded, objective);
@@ -18,7 +18,7 @@ pub(crate) fn run(args: &args::Horizon, out: &mut Output) -> Outcome {
             args::Format::Text => out.write(|w| write!(w, "{}", report.text(objective)))?,
         }
     }
-    Ok(Status::Good)
+    Ok(Exit::Good)
 }
 
 #[derive(Serialize)]

@@ -1,24 +1,24 @@
 //! `hyperplan completions` and `hyperplan man`: what shells and manual readers want to know of the command line.
 
 use crate::args::{self, Cli};
-use crate::failure::{Failure, Outcome, Status};
+use crate::failure::{Exit, Failure, Result};
 use crate::output::{Output, cannot_write};
 use clap::CommandFactory as _;
 
-pub(crate) fn completions(args: &args::Completions, out: &mut Output) -> Outcome {
+pub(crate) fn completions(args: &args::Completions, out: &mut Output) -> Result {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut visible(), "hyperplan", &mut script);
     out.write(|w| w.write_all(&script))?;
-    Ok(Status::Good)
+    Ok(Exit::Good)
 }
 
 /// All pages into a folder, or one page.
-pub(crate) fn man(args: &args::Man, out: &mut Output) -> Outcome {
+pub(crate) fn man(args: &args::Man, out: &mut Output) -> Result {
     if let Some(folder) = &args.output {
         let written =
             std::fs::create_dir_all(folder).and_then(|()| clap_mangen::generate_to(visible(), folder));
         written.map_err(|error| cannot_write(folder, &error))?;
-        return Ok(Status::Good);
+        return Ok(Exit::Good);
     }
     let mut command = visible();
     command.build();
@@ -33,7 +33,7 @@ pub(crate) fn man(args: &args::Man, out: &mut Output) -> Outcome {
     let source = concat!("hyperplan ", env!("CARGO_PKG_VERSION"));
     clap_mangen::Man::new(command).source(source).render(&mut page).map_err(Failure::input)?;
     out.write(|w| w.write_all(&page))?;
-    Ok(Status::Good)
+    Ok(Exit::Good)
 }
 
 /// The command line without what is only for hyperplan itself.

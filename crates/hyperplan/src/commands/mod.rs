@@ -14,11 +14,11 @@ mod templates;
 mod verify;
 
 use crate::args::{Cli, Command};
-use crate::failure::Outcome;
+use crate::failure::Result;
 use crate::output::Output;
 
 /// Runs the command that was asked for.
-pub(crate) fn run(cli: &Cli, out: &mut Output) -> Outcome {
+pub(crate) fn run(cli: &Cli, out: &mut Output) -> Result {
     let verbose = cli.global.verbose;
     match &cli.command {
         Command::Solve(args) => solve::run(args, verbose, cli.global.quiet, out),

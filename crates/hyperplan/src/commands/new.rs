@@ -1,7 +1,7 @@
 //! `hyperplan new`: a problem file to begin with.
 
 use crate::args;
-use crate::failure::{Failure, Outcome, Status};
+use crate::failure::{Exit, Failure, Result};
 use crate::output::{Output, cannot_write};
 use hyperplan_compare::one_line;
 use std::fs::OpenOptions;
@@ -10,10 +10,10 @@ use std::io::{ErrorKind, Write as _};
 /// Where it says `FILE`, the name is filled in.
 const STARTER: &str = include_str!("../starter.hp");
 
-pub(crate) fn run(args: &args::New, out: &mut Output) -> Outcome {
+pub(crate) fn run(args: &args::New, out: &mut Output) -> Result {
     let Some(path) = &args.file else {
         out.line(STARTER.trim_end())?;
-        return Ok(Status::Good);
+        return Ok(Exit::Good);
     };
     // In comments, which end with the line.
     let name = one_line(&path.display().to_string()).into_owned();
@@ -24,5 +24,5 @@ pub(crate) fn run(args: &args::New, out: &mut Output) -> Outcome {
     })?;
     file.write_all(STARTER.replace("FILE", &name).as_bytes()).map_err(|error| cannot_write(path, &error))?;
     out.remark(format_args!("note: {name} is written; now: hyperplan solve {name} --objective fastest"));
-    Ok(Status::Good)
+    Ok(Exit::Good)
 }

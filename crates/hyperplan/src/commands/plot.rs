@@ -1,13 +1,13 @@
 //! `hyperplan plot`: the map with the paths of a strategy.
 
 use crate::args;
-use crate::failure::{Failure, Outcome, Status};
+use crate::failure::{Exit, Failure, Result};
 use crate::load::{Given, Loaded};
 use crate::output::{Output, check_writable};
 use crate::report::{Picture, write_picture};
 use hyperplan_render::{Scene, TextStyle, text_map};
 
-pub(crate) fn run(args: &args::Plot, out: &mut Output) -> Outcome {
+pub(crate) fn run(args: &args::Plot, out: &mut Output) -> Result {
     let picture = args.output.as_deref().map(Picture::new).transpose()?;
     if let Some(path) = &args.output {
         check_writable(path)?;
@@ -38,5 +38,5 @@ pub(crate) fn run(args: &args::Plot, out: &mut Output) -> Outcome {
             out.write(|w| w.write_all(text.as_bytes()))?;
         }
     }
-    Ok(Status::Good)
+    Ok(Exit::Good)
 }

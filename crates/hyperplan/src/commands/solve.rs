@@ -3,10 +3,10 @@
 use crate::args::{self, Format};
 use crate::config;
 use crate::explain::{Explain, Why};
-use crate::failure::{Failure, Outcome, Status};
-use crate::family::{Family, Searched};
+use crate::failure::{Exit, Failure, Result};
 use crate::load::Loaded;
 use crate::output::{Output, write_file};
+use crate::parameter::{Parameter, Searched};
 use crate::report::{json, write_picture};
 use hyperplan_plan::{self as plan, MinimizeError};
 use hyperplan_problem::answer::{
@@ -22,26 +22,26 @@ const MAP_ROWS: u32 = 40;
 /// Longer tables are left to `--save`.
 const TABLE_ROWS: usize = 60;
 
-pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Output) -> Outcome {
+pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Output) -> Result {
     let config = config::Solve::new(args)?;
-    let (family, loaded) = match &args.minimize {
+    let (parameter, loaded) = match &args.minimize {
         None => (None, Loaded::read(&args.problem, out)?),
         Some(wanted) => {
-            let (family, loaded) = Family::read(&args.problem, wanted, out)?;
-            (Some(family), loaded)
+            let (parameter, loaded) = Parameter::read(&args.problem, wanted, out)?;
+            (Some(parameter), loaded)
         }
     };
     let explain = Explain { queries: config.plan.queries.as_deref() };
     let objectives = loaded.selected(args.selection.objective.as_deref(), false)?;
     let several = objectives.len() > 1;
-    let mut worst = Status::Good;
+    let mut worst = Exit::Good;
     let mut saved = String::new();
     for (index, objective) in objectives.into_iter().enumerate() {
         if out.is_closed() {
             break;
         }
         let start = Instant::now();
-        let (outcome, searched) = match solve(&loaded, objective, family.as_ref(), &config.plan, explain) {
+        let (outcome, searched) = match solve(&loaded, objective, parameter.as_ref(), &config.plan, explain) {
             Ok(found) => found,
             Err((failure, reason_code)) => {
                 // The other objectives may do better.
@@ -91,7 +91,7 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
 fn solve(
     loaded: &Loaded,
     objective: &Objective,
-    family: Option<&Family<'_>>,
+    parameter: Option<&Parameter<'_>>,
     config: &plan::Config,
     explain: Explain<'_>,
 ) -> Result<(plan::Outcome, Option<Searched>), (Failure, ReasonCode)> {
@@ -99,26 +99,26 @@ fn solve(
     let failed = |error: &plan::Error, value: String| {
         (explain.failure(format_args!("{name}{value}"), error), error.code())
     };
-    let Some(family) = family else {
+    let Some(parameter) = parameter else {
         let outcome = plan::solve(&loaded.problem, objective, config);
         return outcome.map(|outcome| (outcome, None)).map_err(|error| failed(&error, String::new()));
     };
-    match family.least(loaded, objective, config, explain) {
+    match parameter.least(loaded, objective, config, explain) {
         Ok((outcome, searched)) => Ok((outcome, Some(searched))),
         Err(MinimizeError::Problem(failure)) => Err((failure, ReasonCode::Unsupported)),
         Err(MinimizeError::Solve { value, error }) => {
-            Err(failed(&error, format!(" with {} = {value}", family.constant)))
+            Err(failed(&error, format!(" with {} = {value}", parameter.constant)))
         }
     }
 }
 
-fn status(answer: &Answer) -> Status {
+fn status(answer: &Answer) -> Exit {
     match answer.verdict {
         // A value that need not be the least is not what was asked for.
-        _ if answer.minimized.as_ref().is_some_and(|m| m.below == Below::Unknown) => Status::Undecided,
-        Verdict::Realizable => Status::Good,
-        Verdict::Unrealizable => Status::Unrealizable,
-        Verdict::Unknown => Status::Undecided,
+        _ if answer.minimized.as_ref().is_some_and(|m| m.below == Below::Unknown) => Exit::Undecided,
+        Verdict::Realizable => Exit::Good,
+        Verdict::Unrealizable => Exit::Unrealizable,
+        Verdict::Unknown => Exit::Undecided,
     }
 }
 

@@ -2,13 +2,13 @@
 
 use crate::args::{self, Format};
 use crate::configuration;
-use crate::failure::{Outcome, Status};
+use crate::failure::{Exit, Result};
 use crate::output::Output;
 use crate::report::json;
 use hyperplan_solver::Found;
 use serde::Serialize;
 
-pub(crate) fn run(args: &args::Solvers, out: &mut Output) -> Outcome {
+pub(crate) fn run(args: &args::Solvers, out: &mut Output) -> Result {
     let catalog = configuration::catalog()?;
     let found = catalog.discover();
     match args.output.format {
@@ -22,7 +22,7 @@ pub(crate) fn run(args: &args::Solvers, out: &mut Output) -> Outcome {
             }
         }
     }
-    Ok(Status::Good)
+    Ok(Exit::Good)
 }
 
 /// A line for where a solver is, and lines for what it can do; for one that was not found, what was tried, and how to

@@ -1,23 +1,23 @@
 //! `hyperplan templates`: the prelude.
 
 use crate::args;
-use crate::failure::{Failure, Outcome, Status};
+use crate::failure::{Exit, Failure, Result};
 use crate::output::Output;
 use hyperplan_problem::prelude::TEXT as PRELUDE;
 use hyperplan_syntax::ast::{Item, Template};
 use hyperplan_syntax::{SourceId, parse};
 
-pub(crate) fn run(args: &args::Templates, out: &mut Output) -> Outcome {
+pub(crate) fn run(args: &args::Templates, out: &mut Output) -> Result {
     let text = match &args.name {
         None => PRELUDE.to_owned(),
         Some(name) => one(name)?,
     };
     out.line(text.trim_end())?;
-    Ok(Status::Good)
+    Ok(Exit::Good)
 }
 
 /// A template with the comment above it, as written.
-fn one(name: &str) -> Outcome<String> {
+fn one(name: &str) -> Result<String> {
     let (file, _) = parse(SourceId(0), PRELUDE);
     let templates = file.items.iter().filter_map(|item| match item {
         Item::Template(template) => Some(template),

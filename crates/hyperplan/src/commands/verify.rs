@@ -2,7 +2,7 @@
 
 use crate::args;
 use crate::explain::Explain;
-use crate::failure::{Failure, Outcome, Status};
+use crate::failure::{Exit, Failure, Result};
 use crate::load::{Given, Loaded, read_source};
 use crate::output::{Output, cannot_write};
 use crate::report;
@@ -11,11 +11,11 @@ use hyperplan_problem::answer::{WitnessPath, to_witness};
 use hyperplan_problem::{Objective, Problem, Quantifier, Strategy, Trace};
 use hyperplan_render::{actions_line, table};
 use hyperplan_solver::{Deadline, PrintedModel};
-use hyperplan_verify::{Budget, Defeat, Verdict, check};
+use hyperplan_verify::{Budget, Check, Defeat, check};
 use serde::Serialize;
 use std::path::Path;
 
-pub(crate) fn run(args: &args::Verify, out: &mut Output) -> Outcome {
+pub(crate) fn run(args: &args::Verify, out: &mut Output) -> Result {
     let loaded = Loaded::read(&args.problem, out)?;
     let name = args.selection.objective.as_deref();
     let (given, strategies) = match (&args.strategy, &args.model) {
@@ -30,7 +30,7 @@ pub(crate) fn run(args: &args::Verify, out: &mut Output) -> Outcome {
     if let Some(path) = &args.save {
         save(&loaded, &strategies, path)?;
     }
-    let mut worst = Status::Good;
+    let mut worst = Exit::Good;
     for (objective, strategy) in strategies {
         let verdict = check(&loaded.problem, objective, &strategy, &Budget::default());
         let verdict = verdict.map_err(|e| Failure::input(format_args!("{given}: {e}")))?;
@@ -56,7 +56,7 @@ fn of_model<'l>(
     loaded: &'l Loaded,
     name: Option<&str>,
     file: &Path,
-) -> Outcome<Vec<(&'l Objective, Strategy)>> {
+) -> Result<Vec<(&'l Objective, Strategy)>> {
     let shown = file.display();
     let text = match file.to_str() {
         Some("-") => std::io::read_to_string(std::io::stdin())
@@ -76,7 +76,7 @@ fn of_model<'l>(
 }
 
 /// Saves strategies as `verify` and `plot` read them, a line each.
-fn save(loaded: &Loaded, strategies: &[(&Objective, Strategy)], path: &Path) -> Outcome<()> {
+fn save(loaded: &Loaded, strategies: &[(&Objective, Strategy)], path: &Path) -> Result<()> {
     let mut text = String::new();
     for (objective, strategy) in strategies {
         let witness = to_witness(&loaded.problem, objective, strategy);
@@ -108,10 +108,10 @@ struct Report {
 }
 
 impl Report {
-    fn new(loaded: &Loaded, strategy: &str, objective: &Objective, verdict: &Verdict) -> Self {
+    fn new(loaded: &Loaded, strategy: &str, objective: &Objective, verdict: &Check) -> Self {
         let (verdict, reason, defeat) = match verdict {
-            Verdict::Holds => ("holds", None, None),
-            Verdict::Fails(defeat) => {
+            Check::Holds => ("holds", None, None),
+            Check::Fails(defeat) => {
                 let paths = match defeat {
                     Defeat::Paths(traces) => {
                         let strategy = Strategy { traces: traces.clone() };
@@ -121,7 +121,7 @@ impl Report {
                 };
                 ("fails", Some(defeat.describe(objective)), paths)
             }
-            Verdict::TooLarge { reached, .. } => {
+            Check::TooLarge { reached, .. } => {
                 let systems = objective.paths.iter().map(|path| &loaded.problem.systems[path.system]);
                 let unbounded = systems.into_iter().find(|system| !system.is_finite());
                 let reason = match unbounded {
@@ -144,15 +144,15 @@ impl Report {
         }
     }
 
-    fn status(&self) -> Status {
+    fn status(&self) -> Exit {
         match self.verdict {
-            "holds" => Status::Good,
-            "fails" => Status::Unrealizable,
-            _ => Status::Undecided,
+            "holds" => Exit::Good,
+            "fails" => Exit::Unrealizable,
+            _ => Exit::Undecided,
         }
     }
 
-    fn text(&self, problem: &Problem, objective: &Objective, verdict: &Verdict) -> String {
+    fn text(&self, problem: &Problem, objective: &Objective, verdict: &Check) -> String {
         let role = match objective.paths.first().map(|p| p.quantifier) {
             Some(Quantifier::Forall) => "counterexample",
             _ => "strategy",
@@ -164,7 +164,7 @@ impl Report {
             }
             Some(reason) => format!("{}: undecided: {reason}\n", self.objective),
         };
-        if let Verdict::Fails(Defeat::Paths(traces)) = verdict {
+        if let Check::Fails(Defeat::Paths(traces)) = verdict {
             for trace in traces {
                 text.push_str(&shown(problem, objective, trace));
             }

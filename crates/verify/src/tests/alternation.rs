@@ -2,7 +2,7 @@
 
 use super::build::{F, b, problem, strategy, system, trace};
 use super::naive::{Naive, Path};
-use crate::{Budget, Defeat, Verdict, check, decide};
+use crate::{Budget, Check, Defeat, check, decide};
 use hyperplan_problem::{Mode, Quantifier};
 use hyperplan_syntax::ast::BinaryOp;
 
@@ -123,8 +123,8 @@ fn up_to_three_blocks_agree_with_enumeration() {
             let good = naive.holds(&prefix[1..], &[path], &f) == claimed;
             let verdict = check(&problem, objective, &strategy(&[as_trace(0, path)]), &Budget::default());
             match verdict.unwrap() {
-                Verdict::Holds => assert!(good, "{prefix} {mode:?} {edges:?} {path:?} {f:?}"),
-                Verdict::Fails(Defeat::Paths(traces)) => {
+                Check::Holds => assert!(good, "{prefix} {mode:?} {edges:?} {path:?} {f:?}"),
+                Check::Fails(Defeat::Paths(traces)) => {
                     assert!(!good, "{prefix} {mode:?} {edges:?} {path:?} {f:?}");
                     assert_eq!(
                         traces.len(),
@@ -148,7 +148,7 @@ fn up_to_three_blocks_agree_with_enumeration() {
                     }
                     assert!(extended.iter().all(|e| !e.is_empty()), "a defeat must be a path");
                 }
-                Verdict::Fails(Defeat::Formula) => assert!(!good && prefix.len() == 1),
+                Check::Fails(Defeat::Formula) => assert!(!good && prefix.len() == 1),
                 other => panic!("{other:?}"),
             }
         }

@@ -1,7 +1,7 @@
 //! A shortest path on grids of some size: a check should cost little more than cells x steps.
 
 use super::build::span;
-use crate::{Budget, Defeat, Verdict, check};
+use crate::{Budget, Check, Defeat, check};
 use hyperplan_problem::{
     ActionId, Clause, Comparison, Expr, Formula, Interval, Label, LabelId, Leaf, Mode, Node, Objective,
     PathId, PathLeaf, PathVar, Problem, Quantifier, State, Strategy, System, SystemId, Trace, Type, Update,
@@ -98,15 +98,15 @@ fn walk(n: i64, detours: usize) -> Strategy {
     }
 }
 
-fn run(n: i64, detours: usize) -> Verdict {
+fn run(n: i64, detours: usize) -> Check {
     let problem = shortest(n, u32::try_from(2 * n).unwrap() + 1);
     check(&problem, &problem.objectives[0], &walk(n, detours), &Budget::default()).unwrap()
 }
 
 #[test]
 fn a_shortest_path_on_a_grid() {
-    assert_eq!(run(20, 0), Verdict::Holds);
-    let Verdict::Fails(Defeat::Paths(traces)) = run(20, 1) else { panic!("a detour is not shortest") };
+    assert_eq!(run(20, 0), Check::Holds);
+    let Check::Fails(Defeat::Paths(traces)) = run(20, 1) else { panic!("a detour is not shortest") };
     let steps_to_goal = traces[0].states.iter().position(|s| **s == [Value::Int(19), Value::Int(19)]);
     assert_eq!(steps_to_goal, Some(38));
 }
@@ -114,13 +114,13 @@ fn a_shortest_path_on_a_grid() {
 #[test]
 #[ignore = "for measuring, in a release build"]
 fn a_grid_of_60() {
-    assert_eq!(run(60, 0), Verdict::Holds);
+    assert_eq!(run(60, 0), Check::Holds);
 }
 
 #[test]
 #[ignore = "for measuring, in a release build"]
 fn a_grid_of_200() {
-    assert_eq!(run(200, 0), Verdict::Holds);
+    assert_eq!(run(200, 0), Check::Holds);
 }
 
 /// A wall between columns `8 i - 1` and `8 i`, with one door: at the top and at the bottom by turns.
@@ -212,8 +212,8 @@ fn a_defeating_run_through_rooms_is_one() {
     };
     // Far longer than the 62 steps that the map without walls takes; then up and down to the end.
     assert_eq!(way.len(), 62 + 2 * 31);
-    assert_eq!(run(&[way.clone(), vec![3, 2]].concat()), Verdict::Holds);
-    let Verdict::Fails(Defeat::Paths(traces)) = run(&late) else { panic!("a detour is not shortest") };
+    assert_eq!(run(&[way.clone(), vec![3, 2]].concat()), Check::Holds);
+    let Check::Fails(Defeat::Paths(traces)) = run(&late) else { panic!("a detour is not shortest") };
     let [q] = traces.as_slice() else { panic!("one path is free") };
     let taken: Vec<u32> = q.actions.iter().map(|a| a.0).collect();
     assert_eq!(q.states, along(n, &taken));

@@ -1,7 +1,7 @@
 //! Strategies: malformed, failing, and the defeats that show it.
 
 use super::build::{F, b, numbers, problem, strategy, system, trace};
-use crate::{Budget, Defeat, Error, Verdict, check};
+use crate::{Budget, Check, Defeat, Error, check};
 use hyperplan_problem::{Mode, PathId, Problem, Trace};
 use hyperplan_syntax::ast::BinaryOp;
 
@@ -14,7 +14,7 @@ fn square(prefix: &str, mode: Mode, f: &F) -> Problem {
     problem(system(5, 3, &EDGES, &[0]), prefix, mode, f)
 }
 
-fn run(problem: &Problem, traces: &[Trace]) -> Result<Verdict, Error> {
+fn run(problem: &Problem, traces: &[Trace]) -> Result<Check, Error> {
     check(problem, &problem.objectives[0], &strategy(traces), &Budget::default())
 }
 
@@ -37,8 +37,8 @@ fn assert_is_path(trace: &Trace) {
 #[test]
 fn a_detour_is_defeated_by_the_shortcut() {
     let problem = square("ea", Mode::Bounded, &fastest());
-    assert_eq!(run(&problem, &[trace(0, &[0, 3, 3], &[2, 0])]), Ok(Verdict::Holds));
-    let Ok(Verdict::Fails(Defeat::Paths(traces))) = run(&problem, &[trace(0, &[0, 1, 3], &[0, 0])]) else {
+    assert_eq!(run(&problem, &[trace(0, &[0, 3, 3], &[2, 0])]), Ok(Check::Holds));
+    let Ok(Check::Fails(Defeat::Paths(traces))) = run(&problem, &[trace(0, &[0, 1, 3], &[0, 0])]) else {
         panic!("not defeated");
     };
     assert_is_path(&traces[0]);
@@ -52,7 +52,7 @@ fn a_detour_is_defeated_by_the_shortcut() {
 fn within_k_a_defeat_has_k_steps() {
     let problem = square("ea", Mode::Within(4), &fastest());
     let detour = trace(0, &[0, 1, 3, 3, 3], &[0, 0, 0, 0]);
-    let Ok(Verdict::Fails(Defeat::Paths(traces))) = run(&problem, &[detour]) else { panic!("not defeated") };
+    let Ok(Check::Fails(Defeat::Paths(traces))) = run(&problem, &[detour]) else { panic!("not defeated") };
     assert_eq!(numbers(&traces[0]), (vec![0, 3, 3, 3, 3], vec![2, 0, 0, 0]));
 }
 
@@ -61,8 +61,8 @@ fn a_counterexample_makes_the_rest_fail() {
     // Every p is in 1 or 2 after a step, and so can r be: wrong for the shortcut.
     let f = F::X(b(F::And(vec![F::SameState(0, 1), F::Not(b(F::At(1, 3)))])));
     let problem = square("ae", Mode::Bounded, &f);
-    assert_eq!(run(&problem, &[trace(0, &[0, 3], &[2])]), Ok(Verdict::Holds));
-    let Ok(Verdict::Fails(Defeat::Paths(traces))) = run(&problem, &[trace(0, &[0, 1], &[0])]) else {
+    assert_eq!(run(&problem, &[trace(0, &[0, 3], &[2])]), Ok(Check::Holds));
+    let Ok(Check::Fails(Defeat::Paths(traces))) = run(&problem, &[trace(0, &[0, 1], &[0])]) else {
         panic!("not defeated");
     };
     assert_eq!(numbers(&traces[0]).0, [0, 1]);
@@ -72,7 +72,7 @@ fn a_counterexample_makes_the_rest_fail() {
 fn traces_that_are_no_paths_fail() {
     let problem = square("e", Mode::Bounded, &F::X(b(F::At(0, 2))));
     let path = PathId(0);
-    let fails = |defeat| Ok(Verdict::Fails(defeat));
+    let fails = |defeat| Ok(Check::Fails(defeat));
     assert_eq!(run(&problem, &[trace(0, &[1, 3], &[0])]), fails(Defeat::NotInitial { path }));
     assert_eq!(
         run(&problem, &[trace(0, &[0, 2, 1], &[1, 1])]),
@@ -81,10 +81,10 @@ fn traces_that_are_no_paths_fail() {
     assert_eq!(run(&problem, &[trace(0, &[0, 2], &[0])]), fails(Defeat::NoTransition { path, step: 0 }));
     assert_eq!(run(&problem, &[trace(0, &[0, 2, 4], &[1, 0])]), fails(Defeat::DeadEnd { path }));
     assert_eq!(run(&problem, &[trace(0, &[0, 1], &[0])]), fails(Defeat::Formula));
-    assert_eq!(run(&problem, &[trace(0, &[0, 2], &[1])]), Ok(Verdict::Holds));
+    assert_eq!(run(&problem, &[trace(0, &[0, 2], &[1])]), Ok(Check::Holds));
     // Within 2 the dead end is as good as anywhere.
     let problem = square("e", Mode::Within(2), &F::X(b(F::At(0, 2))));
-    assert_eq!(run(&problem, &[trace(0, &[0, 2, 4], &[1, 0])]), Ok(Verdict::Holds));
+    assert_eq!(run(&problem, &[trace(0, &[0, 2, 4], &[1, 0])]), Ok(Check::Holds));
 }
 
 #[test]
@@ -110,7 +110,7 @@ fn malformed_strategies_are_errors() {
 fn a_trace_may_end_where_it_is_no_longer_read() {
     let reach = F::Fin(0, Some(4), b(F::At(0, 3)));
     let problem = square("e", Mode::Bounded, &reach);
-    assert_eq!(run(&problem, &[trace(0, &[0, 3], &[2])]), Ok(Verdict::Holds));
+    assert_eq!(run(&problem, &[trace(0, &[0, 3], &[2])]), Ok(Check::Holds));
     let error = |steps| Err(Error::WrongLength { path: "p0".into(), steps, needed: 4 });
     assert_eq!(run(&problem, &[trace(0, &[0, 1], &[0])]), error(1));
     // p1 may be anywhere at step 4, so it matters that p0 was not told.
@@ -120,7 +120,7 @@ fn a_trace_may_end_where_it_is_no_longer_read() {
     // Where another path decides, it does not.
     let either = F::Or(vec![F::Fin(0, Some(4), b(F::At(0, 4))), F::Fin(0, Some(9), b(F::At(1, 3)))]);
     let problem = square("ea", Mode::Bounded, &either);
-    assert_eq!(run(&problem, &[trace(0, &[0, 3], &[2])]), Ok(Verdict::Holds));
+    assert_eq!(run(&problem, &[trace(0, &[0, 3], &[2])]), Ok(Check::Holds));
 }
 
 #[test]
@@ -129,6 +129,6 @@ fn a_small_budget_is_reported() {
     let budget = Budget { moves: 2, ..Budget::default() };
     let strategy = strategy(&[trace(0, &[0, 3, 3], &[2, 0])]);
     let verdict = check(&problem, &problem.objectives[0], &strategy, &budget);
-    let Ok(Verdict::TooLarge { budget: reported, reached }) = verdict else { panic!("{verdict:?}") };
+    let Ok(Check::TooLarge { budget: reported, reached }) = verdict else { panic!("{verdict:?}") };
     assert_eq!((reported, reached.moves), (budget, 4));
 }

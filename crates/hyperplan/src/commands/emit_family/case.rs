@@ -4,7 +4,7 @@ use super::emit::LARGEST;
 use super::{Note, Work};
 use crate::config;
 use crate::explain::Explain;
-use crate::failure::{self, Failure, Outcome};
+use crate::failure::{self, Failure, Result};
 use crate::store::write_whole;
 use hyperplan_family::{
     About, Case, Dropped, Entry, Folder, Horizon, Layout, Map, Objective, Record, body_of, sha256,
@@ -37,7 +37,7 @@ struct Encoding {
 }
 
 impl One<'_> {
-    pub(super) fn run(&self, least: Option<Option<u32>>) -> Outcome<()> {
+    pub(super) fn run(&self, least: Option<Option<u32>>) -> Result<()> {
         let name = self.case.to_string();
         let map = match Map::random(self.case.map) {
             Ok(map) => map,
@@ -69,7 +69,7 @@ impl One<'_> {
         let _ = self.notes.send(Note::Record(Box::new(record)));
     }
 
-    fn dropped(&self, instance: &str, reason: &str) -> Outcome<()> {
+    fn dropped(&self, instance: &str, reason: &str) -> Result<()> {
         if !self.deadline.passed() {
             let (instance, reason) = (instance.to_owned(), reason.to_owned());
             self.note(Record::Dropped(Dropped { instance, reason }));
@@ -82,7 +82,7 @@ impl One<'_> {
     }
 
     /// Searches for the least horizon.
-    fn least(&self, map: &Map) -> Outcome<Found> {
+    fn least(&self, map: &Map) -> Result<Found> {
         let objective = self.case.objective;
         let most = objective.most_steps(map);
         let mut problem = |steps: i64| problem(objective, map, u32::try_from(steps).unwrap_or(0));
@@ -106,7 +106,7 @@ impl One<'_> {
     }
 
     /// What an error means for one instance; a bug of ours, or a solver's, ends everything.
-    fn undecided(&self, error: &plan::Error) -> Outcome<String> {
+    fn undecided(&self, error: &plan::Error) -> Result<String> {
         match error.fault() {
             Fault::Request | Fault::Time => Ok(Explain::default().error(error)),
             Fault::Solver | Fault::Ours => Err(Explain::default().failure(self.case, error)),
@@ -114,7 +114,7 @@ impl One<'_> {
     }
 
     /// Writes the problem and the benchmarks of a horizon; `false` where the time is up.
-    fn horizon(&self, map: &Map, horizon: Horizon, steps: u32) -> Outcome<bool> {
+    fn horizon(&self, map: &Map, horizon: Horizon, steps: u32) -> Result<bool> {
         let objective = self.case.objective;
         let name = format!("{}-T{steps}", self.case);
         let wanted: Vec<(String, Encoding)> =
@@ -157,7 +157,7 @@ impl One<'_> {
 
     /// The status of an instance: what the search for the least horizon proved, or what the solver says; `None` where
     /// the time is up.
-    fn status(&self, problem: &Problem, horizon: Horizon) -> Outcome<Option<Status>> {
+    fn status(&self, problem: &Problem, horizon: Horizon) -> Result<Option<Status>> {
         match horizon {
             Horizon::Below | Horizon::Never => return Ok(Some(Status::Unsat)),
             Horizon::Least => return Ok(Some(Status::Sat)),
@@ -201,7 +201,7 @@ impl One<'_> {
         encoding: Encoding,
         status: Status,
         about: About,
-    ) -> Outcome<()> {
+    ) -> Result<()> {
         let Some(objective) = problem.objective(self.case.objective.name()) else { return Ok(()) };
         let map = self.case.map;
         let remark = format!(
@@ -260,16 +260,16 @@ impl Encoding {
 }
 
 /// The problem of an objective on a map.
-fn problem(objective: Objective, map: &Map, steps: u32) -> Outcome<Problem> {
+fn problem(objective: Objective, map: &Map, steps: u32) -> Result<Problem> {
     parsed(&objective.problem(map, steps))
 }
 
-fn parsed(text: &str) -> Outcome<Problem> {
+fn parsed(text: &str) -> Result<Problem> {
     let mut sources = SourceMap::new();
     let lowered = read(&mut sources, "problem.hp", text, &NoFiles, &Overrides::default());
     if lowered.has_errors() {
         let message = format!("this is a bug in hyperplan: a problem that it made has errors\n{text}");
-        return Err(Failure { status: failure::Status::Bug, message });
+        return Err(Failure { status: failure::Exit::Bug, message });
     }
     Ok(lowered.problem)
 }

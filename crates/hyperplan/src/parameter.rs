@@ -2,7 +2,7 @@
 
 use crate::args::{self, Minimize};
 use crate::explain::{Explain, Why};
-use crate::failure::{Failure, Outcome};
+use crate::failure::{Failure, Result};
 use crate::load::{self, Loaded};
 use crate::output::Output;
 use hyperplan_plan::{self as plan, Config, Least, MinimizeError, Verdict, minimize};
@@ -14,7 +14,7 @@ use std::ops::RangeInclusive;
 use std::time::Instant;
 
 /// A file without errors in its syntax, and the values that its constant may take.
-pub(crate) struct Family<'a> {
+pub(crate) struct Parameter<'a> {
     args: &'a args::Problem,
     pub(crate) constant: &'a str,
     pub(crate) range: RangeInclusive<i64>,
@@ -23,14 +23,14 @@ pub(crate) struct Family<'a> {
     sources: SourceMap,
 }
 
-impl<'a> Family<'a> {
+impl<'a> Parameter<'a> {
     /// Reads a problem file. Its errors and warnings are those of the file as it is, or, if the range was given, for
     /// the first value.
     pub(crate) fn read(
         args: &'a args::Problem,
         wanted: &'a Minimize,
         out: &Output,
-    ) -> Outcome<(Self, Loaded)> {
+    ) -> Result<(Self, Loaded)> {
         let constant = wanted.constant.as_str();
         let start = Instant::now();
         let text = load::read_source(&args.file)?;
@@ -70,13 +70,13 @@ impl<'a> Family<'a> {
             }
             None => 0..=value,
         };
-        let mut family = Family { args, constant, range, file, sources };
+        let mut parameter = Parameter { args, constant, range, file, sources };
         if wanted.range.is_none() {
             // Such as 0 in `[1,T]`. The file's own value has no errors, so there is such a value.
-            let lo = (0..value).find(|&value| !family.lower(value).0.has_errors()).unwrap_or(value);
-            family.range = lo..=value;
+            let lo = (0..value).find(|&value| !parameter.lower(value).0.has_errors()).unwrap_or(value);
+            parameter.range = lo..=value;
         }
-        Ok((family, loaded))
+        Ok((parameter, loaded))
     }
 
     /// The least value for which an objective is realizable. `base` is the file for another value.
@@ -137,7 +137,7 @@ impl<'a> Family<'a> {
         }
     }
 
-    fn problem(&self, value: i64) -> Outcome<Problem> {
+    fn problem(&self, value: i64) -> Result<Problem> {
         let (lowered, sources) = self.lower(value);
         if lowered.has_errors() {
             let errors: Vec<_> = lowered.diagnostics.into_iter().filter(|d| d.is_error()).collect();
