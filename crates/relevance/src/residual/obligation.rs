@@ -36,9 +36,11 @@ impl Settling {
 struct Known {
     /// By whether the time of the next position is known.
     relaxed: FxHashMap<(Residual, bool), Residual>,
-    can_hold: FxHashMap<Residual, bool>,
-    owes_nothing: FxHashMap<Residual, bool>,
+    outlooks: Outlooks,
 }
+
+/// Whether residuals can still be met, and whether they owe nothing.
+type Outlooks = FxHashMap<Residual, (bool, bool)>;
 
 impl Residuals {
     /// A weaker residual without numbers: deadlines are lifted, and what must always hold is forgotten, but for what
@@ -80,7 +82,7 @@ impl Residuals {
                     let from = from.saturating_sub(time);
                     interval.lo <= from && interval.hi.is_none_or(|hi| from <= hi)
                 });
-                if !covers || self.could_hold(right, settling, known) {
+                if !covers || self.outlook(right, settling, &mut known.outlooks).0 {
                     TRUE
                 } else {
                     let left = self.relaxed(left, None, settling, known);
@@ -123,50 +125,35 @@ impl Residuals {
 
     /// Whether a residual can still be met once the settling atoms are known, as far as they tell.
     pub(crate) fn can_hold(&self, residual: Residual, settling: &Settling) -> bool {
-        self.could_hold(residual, settling, &mut Known::default())
-    }
-
-    fn could_hold(&self, residual: Residual, settling: &Settling, known: &mut Known) -> bool {
-        if let Some(&holds) = known.can_hold.get(&residual) {
-            return holds;
-        }
-        let holds = match &self.shapes[residual as usize] {
-            Shape::True => return true,
-            Shape::False => return false,
-            Shape::Literal { bit, positive } => return settling.literal(*bit, *positive).0,
-            Shape::And(parts) => parts.iter().all(|&part| self.could_hold(part, settling, known)),
-            Shape::Or(parts) => parts.iter().any(|&part| self.could_hold(part, settling, known)),
-            Shape::Next { strong: false, .. } => true,
-            // A trace may end before the interval begins.
-            Shape::Release(Interval { lo: 1.., .. }, ..) => true,
-            Shape::Next { then: part, .. } | Shape::Until(_, _, part) | Shape::Release(_, _, part) => {
-                self.could_hold(*part, settling, known)
-            }
-        };
-        known.can_hold.insert(residual, holds);
-        holds
+        self.outlook(residual, settling, &mut FxHashMap::default()).0
     }
 
     /// Whether nothing is owed any more but that something be never the case.
     pub(crate) fn owes_nothing(&self, residual: Residual, settling: &Settling) -> bool {
-        self.is_free(residual, settling, &mut Known::default())
+        self.outlook(residual, settling, &mut FxHashMap::default()).1
     }
 
-    fn is_free(&self, residual: Residual, settling: &Settling, known: &mut Known) -> bool {
-        if let Some(&free) = known.owes_nothing.get(&residual) {
-            return free;
+    /// Whether a residual can still be met, and whether nothing is owed.
+    fn outlook(&self, residual: Residual, settling: &Settling, known: &mut Outlooks) -> (bool, bool) {
+        if let Some(&outlook) = known.get(&residual) {
+            return outlook;
         }
-        let free = match &self.shapes[residual as usize] {
-            Shape::True => return true,
-            Shape::False => return false,
-            Shape::Literal { bit, positive } => return settling.literal(*bit, *positive).1,
-            Shape::And(parts) => parts.iter().all(|&part| self.is_free(part, settling, known)),
-            Shape::Or(parts) => parts.iter().any(|&part| self.is_free(part, settling, known)),
-            Shape::Next { strong: false, .. } => true,
-            Shape::Next { then: part, .. } | Shape::Until(_, _, part) => self.is_free(*part, settling, known),
-            Shape::Release(_, _, right) => self.could_hold(*right, settling, known),
+        let mut of = |part: &Residual| self.outlook(*part, settling, known);
+        let outlook = match &self.shapes[residual as usize] {
+            Shape::True => (true, true),
+            Shape::False => (false, false),
+            Shape::Literal { bit, positive } => settling.literal(*bit, *positive),
+            Shape::And(parts) => parts.iter().map(of).fold((true, true), |a, b| (a.0 && b.0, a.1 && b.1)),
+            Shape::Or(parts) => parts.iter().map(of).fold((false, false), |a, b| (a.0 || b.0, a.1 || b.1)),
+            Shape::Next { strong: false, .. } => (true, true),
+            Shape::Next { strong: true, then: part } | Shape::Until(_, _, part) => of(part),
+            // A trace may end before the interval begins.
+            Shape::Release(interval, _, right) => {
+                let holds = of(right).0;
+                (interval.lo > 0 || holds, holds)
+            }
         };
-        known.owes_nothing.insert(residual, free);
-        free
+        known.insert(residual, outlook);
+        outlook
     }
 }
