@@ -11,6 +11,7 @@ mod deadline;
 mod embedded;
 mod error;
 mod external;
+mod open;
 mod session;
 mod transcript;
 
@@ -19,8 +20,9 @@ pub use error::{Error, Unknown};
 #[doc(hidden)]
 pub use external::understand_output;
 pub use external::{
-    Catalog, ConfigError, Facts, Found, Install, PrintedModel, PrintedModelError, Profile, Standalone,
+    Catalog, ConfigError, Facts, Found, Install, PrintedModel, PrintedModelError, Profile, Spec, Standalone,
     discover, end_with_parent,
 };
-pub use session::{Answer, Identity, Options, QuerySize, Session, Spec, open};
+pub use open::open;
+pub use session::{Answer, Identity, Options, QuerySize, Session};
 pub use transcript::new_query_file;

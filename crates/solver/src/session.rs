@@ -1,16 +1,12 @@
 //! The common interface of all solvers.
 
 use std::path::PathBuf;
-use std::str::FromStr;
-use std::sync::Arc;
 
 use hyperplan_smt::{Script, Status, Term, Value};
 use serde::Deserialize;
 
 use crate::deadline::Deadline;
-use crate::embedded::{BUILTIN, Engine, backend, names};
 use crate::error::{Error, Unknown};
-use crate::external::{self, Profile};
 
 /// The answer to a check.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -68,87 +64,6 @@ pub trait Session: Send {
     fn size(&self) -> QuerySize;
 }
 
-/// Which solver to use.
-#[derive(Clone, PartialEq, Eq, Debug)]
-pub enum Spec {
-    /// The embedded engine with the best of its SAT solvers.
-    Builtin,
-    /// The embedded engine with the SAT solver of that name: `cadical`, `batsat`.
-    Backend(&'static str),
-    /// A solver that hyperplan knows: `z3`, `cvc5`, `yices`, `bitwuzla`.
-    Profile(String),
-    /// A solver that a configuration file describes.
-    Configured(Arc<Profile>),
-    /// A command line that reads SMT-LIB 2 from standard input. Words are split at blanks; quotes
-    /// keep blanks together.
-    Command(String),
-}
-
-impl Spec {
-    /// A solver for integers and reals that is found on this machine, the first that hyperplan knows.
-    #[must_use]
-    pub fn for_arithmetic() -> Option<Spec> {
-        external::for_arithmetic().map(|name| Spec::Profile(name.to_owned()))
-    }
-
-    /// The embedded engine with each SAT solver of this build.
-    #[must_use]
-    pub fn backends() -> Vec<Spec> {
-        let specs = names().filter_map(|name| Spec::embedded(name)?.ok());
-        specs.filter(|spec| *spec != Spec::Builtin).collect()
-    }
-
-    /// Whether it is the embedded engine.
-    #[must_use]
-    pub fn is_embedded(&self) -> bool {
-        matches!(self, Spec::Builtin | Spec::Backend(_))
-    }
-
-    /// The embedded engine as it is called, if the name is one of its names.
-    ///
-    /// # Errors
-    /// Where this build has not got it.
-    pub fn embedded(name: &str) -> Option<Result<Spec, Error>> {
-        let known = names().find(|known| *known == name)?;
-        let spec = if known == BUILTIN { Spec::Builtin } else { Spec::Backend(known) };
-        Some(backend(known)?.map(|_| spec))
-    }
-
-    /// What the solver is called before it was asked.
-    #[must_use]
-    pub fn name(&self) -> &str {
-        match self {
-            Spec::Builtin => BUILTIN,
-            Spec::Backend(name) => name,
-            Spec::Profile(name) => name,
-            Spec::Configured(profile) => profile.name(),
-            Spec::Command(line) => line,
-        }
-    }
-}
-
-impl FromStr for Spec {
-    type Err = Error;
-
-    fn from_str(text: &str) -> Result<Spec, Error> {
-        let text = text.trim();
-        if text.is_empty() {
-            return Err(Error::Unsupported { what: "the solver's name is empty".to_owned() });
-        }
-        if let Some(embedded) = Spec::embedded(text) {
-            return embedded;
-        }
-        if let Some(profile) = external::profile(text) {
-            return Ok(Spec::Profile(profile.name.clone()));
-        }
-        if external::split_list(text).len() > 1 {
-            let what = format!("one solver is wanted here, not a list ({text})");
-            return Err(Error::Unsupported { what });
-        }
-        Ok(Spec::Command(text.to_owned()))
-    }
-}
-
 /// The quantifiers of a script, or those that a solver takes. Each kind includes those before it.
 #[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -191,43 +106,4 @@ impl Options {
             (false, false) => Quantifiers::None,
         }
     }
-
-    /// Refuses quantifiers beyond those that the solver takes, and names solvers that take them.
-    pub(crate) fn demand_at_most(&self, taken: Quantifiers, solver: &str) -> Result<(), Error> {
-        if self.quantifiers() <= taken {
-            return Ok(());
-        }
-        let beyond = match taken {
-            Quantifiers::None => "quantifiers",
-            _ => "quantifiers inside quantifiers",
-        };
-        let others = external::that_take(self.quantifiers()).join(", ");
-        Err(Error::Unsupported {
-            what: format!("the {solver} solver cannot handle {beyond}: use one of {others}"),
-        })
-    }
-}
-
-/// Starts a session. The solver must be installed.
-///
-/// # Errors
-/// When the solver is missing, or cannot do what the options say.
-pub fn open(spec: &Spec, options: &Options) -> Result<Box<dyn Session>, Error> {
-    match spec {
-        Spec::Builtin | Spec::Backend(_) => {
-            let name = spec.name();
-            let backend = backend(name).ok_or_else(|| unknown(name))??;
-            Ok(Box::new(Engine::new(name, backend, options)?))
-        }
-        Spec::Profile(name) => match external::profile(name) {
-            Some(profile) => external::open_profile(profile, options),
-            None => Err(unknown(name)),
-        },
-        Spec::Configured(profile) => external::open_profile(profile, options),
-        Spec::Command(line) => external::open_command(line, options),
-    }
-}
-
-fn unknown(name: &str) -> Error {
-    Error::Unsupported { what: format!("no solver {name} is known") }
 }

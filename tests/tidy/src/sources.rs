@@ -54,6 +54,10 @@ pub(crate) fn everything() -> Vec<Module> {
     let mut found = Vec::new();
     for folder in crates() {
         found.extend(production(&folder));
+        let script = folder.join("build.rs");
+        if top().join(&script).exists() {
+            follow(&script, Vec::new(), false, &mut found);
+        }
         for other in ["tests", "benches", "targets"] {
             let Ok(entries) = fs::read_dir(top().join(&folder).join(other)) else { continue };
             let mut names: Vec<_> = entries.map(|entry| entry.expect("readable").file_name()).collect();

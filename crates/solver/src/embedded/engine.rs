@@ -2,14 +2,14 @@
 
 use hyperplan_smt::{Header, Script, Sort, Term, Value, WriteOptions, write_script};
 
-use super::backend::Built;
 use super::bits::Gates;
 use super::budget::{Budget, Halt, Memory};
 use super::cnf::{Cnf, width};
+use super::table::Built;
 use super::worker::Worker;
 use crate::deadline::Deadline;
 use crate::error::Error;
-use crate::session::{Answer, Identity, Options, Quantifiers, QuerySize, Session};
+use crate::session::{Answer, Identity, Options, QuerySize, Session};
 use crate::transcript::{cannot_keep, numbered};
 
 /// The embedded engine.
@@ -33,9 +33,8 @@ pub(crate) struct Engine {
 impl Engine {
     /// An engine of that name, with one of the SAT solvers.
     pub(crate) fn new(name: &str, backend: Built, options: &Options) -> Result<Engine, Error> {
-        options.demand_at_most(Quantifiers::None, name)?;
         let memory = options.memory_mib.map(Memory::growing_by).transpose()?;
-        let worker = Worker::start(name, backend, options.seed, options.incremental)?;
+        let worker = Worker::start(name, backend.serve, options.seed, options.incremental)?;
         let cnf = Cnf::new(Gates::new(worker));
         Ok(Engine {
             name: name.to_owned(),

@@ -1,6 +1,6 @@
 //! The embedded engine: scripts of Booleans and bit-vectors, by bit-blasting and SAT.
 //!
-//! Terms become clauses (`cnf`, `bits`), which one of several SAT solvers gets (`backend` has their table), in a thread
+//! Terms become clauses (`cnf`, `bits`), which one of several SAT solvers gets (`table` has them), in a thread
 //! of its own (`worker`).
 
 mod backend;
@@ -11,7 +11,8 @@ mod budget;
 mod cadical;
 mod cnf;
 mod engine;
+mod table;
 mod worker;
 
-pub(crate) use backend::{BUILTIN, backend, names};
 pub(crate) use engine::Engine;
+pub(crate) use table::{BUILTIN, backend, names};

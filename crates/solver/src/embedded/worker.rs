@@ -10,7 +10,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::backend::{Backend, Built, Lit, Setup};
+use super::backend::{Backend, Lit, Setup};
 use super::budget::{Budget, Halt};
 use crate::error::Error;
 
@@ -87,15 +87,15 @@ pub(super) struct Worker {
 }
 
 impl Worker {
-    /// Starts the thread of a solver; `dialogue` if it will be asked more than once.
-    pub(super) fn start(name: &str, backend: Built, seed: u64, dialogue: bool) -> Result<Worker, Error> {
+    /// Starts the thread of a solver, which does `serve`; `dialogue` if it will be asked more than once.
+    pub(super) fn start(name: &str, serve: Serve, seed: u64, dialogue: bool) -> Result<Worker, Error> {
         let (asks, asked) = sync_channel(QUEUE);
         let (replier, replies) = sync_channel(1);
         let stop = Arc::new(AtomicBool::new(false));
         let setup = Setup { seed, dialogue, stop: Arc::clone(&stop) };
         thread::Builder::new()
             .name(name.to_owned())
-            .spawn(move || (backend.serve)(&setup, &asked, &replier))
+            .spawn(move || serve(&setup, &asked, &replier))
             .map_err(|source| Error::Io { what: format!("cannot start a thread for {name}"), source })?;
         let (batch, model) = (Vec::with_capacity(BATCH), Vec::new());
         Ok(Worker { name: name.to_owned(), asks, replies, stop, batch, clauses: 0, is_late: false, model })
@@ -233,7 +233,7 @@ mod tests {
     }
 
     fn start(seed: u64) -> Worker {
-        Worker::start("stubborn", Built::of::<Stubborn>(), seed, true).expect("a thread")
+        Worker::start("stubborn", serve::<Stubborn>, seed, true).expect("a thread")
     }
 
     fn after(milliseconds: u64) -> Budget {

@@ -9,9 +9,10 @@ use serde::de::DeserializeOwned;
 use toml::Spanned;
 
 use super::profile::{Assumptions, FILE, Install, Profile, Theory};
+use super::spec::Spec;
 use crate::embedded;
 use crate::error::Error;
-use crate::session::{Quantifiers, Spec};
+use crate::session::{Options, Quantifiers};
 
 /// The solvers that can be named. Later files come before earlier ones, and all before hyperplan's own table.
 #[derive(Clone, Debug)]
@@ -299,8 +300,23 @@ pub(crate) fn profile(name: &str) -> Option<&'static Arc<Profile>> {
     KNOWN.profile(name)
 }
 
+/// Refuses quantifiers beyond those that the solver takes, and names solvers that take them.
+pub(crate) fn demand_at_most(options: &Options, taken: Quantifiers, solver: &str) -> Result<(), Error> {
+    if options.quantifiers() <= taken {
+        return Ok(());
+    }
+    let beyond = match taken {
+        Quantifiers::None => "quantifiers",
+        _ => "quantifiers inside quantifiers",
+    };
+    let others = that_take(options.quantifiers()).join(", ");
+    Err(Error::Unsupported {
+        what: format!("the {solver} solver cannot handle {beyond}: use one of {others}"),
+    })
+}
+
 /// The names of the solvers that take those quantifiers.
-pub(crate) fn that_take(quantifiers: Quantifiers) -> Vec<&'static str> {
+fn that_take(quantifiers: Quantifiers) -> Vec<&'static str> {
     names(|profile| profile.quantifiers >= quantifiers)
 }
 

@@ -2,10 +2,11 @@
 
 use hyperplan_smt::{Features, logic};
 
-use super::catalog::{names, profile};
+use super::catalog::{demand_at_most, names, profile};
 use super::profile::{Profile, Theory};
+use super::spec::Spec;
 use crate::error::Error;
-use crate::session::{Options, Quantifiers, Spec};
+use crate::session::{Options, Quantifiers};
 
 /// What a solver takes, as far as it is known; what is not known, it takes.
 #[derive(Clone, Debug)]
@@ -59,8 +60,8 @@ impl Facts {
     /// # Errors
     /// [`Error::Unsupported`].
     pub fn demand_quantifiers(&self, nested: bool) -> Result<(), Error> {
-        Options { quantified: true, nested, ..Options::default() }
-            .demand_at_most(self.quantifiers, &self.name)
+        let options = Options { quantified: true, nested, ..Options::default() };
+        demand_at_most(&options, self.quantifiers, &self.name)
     }
 
     /// The logic that serves it best for terms with those features.

@@ -12,6 +12,7 @@ mod process;
 mod profile;
 mod program;
 mod reply;
+mod spec;
 mod standalone;
 mod version;
 mod watchdog;
@@ -26,7 +27,7 @@ use crate::error::Error;
 use crate::session::{Options, Session};
 
 pub use catalog::{Catalog, ConfigError};
-pub(crate) use catalog::{profile, split_list, that_take};
+pub(crate) use catalog::{demand_at_most, profile, split_list};
 pub(crate) use discover::for_arithmetic;
 pub use discover::{Found, discover};
 pub use facts::Facts;
@@ -35,6 +36,7 @@ pub use process::end_with_parent;
 pub use profile::{Install, Profile};
 #[doc(hidden)]
 pub use reply::understand_output;
+pub use spec::Spec;
 pub use standalone::Standalone;
 
 /// A session with a solver that is known by name.

@@ -4,7 +4,7 @@ use std::env;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::catalog::profiles;
+use super::catalog::{demand_at_most, profiles};
 use super::profile::{FILE, Profile};
 use super::version::Version;
 use crate::embedded;
@@ -26,7 +26,7 @@ pub(super) struct Program {
 impl Program {
     /// The program of a solver that is known by name.
     pub(super) fn of_profile(profile: &Arc<Profile>, options: &Options) -> Result<Program, Error> {
-        options.demand_at_most(profile.quantifiers, &profile.name)?;
+        demand_at_most(options, profile.quantifiers, &profile.name)?;
         let (path, tried) = locate(profile);
         let hint = || format!("{}; or set {}", profile.install, profile.variable());
         let path = path.ok_or_else(|| Error::Missing { name: profile.name.clone(), tried, hint: hint() })?;

@@ -6,9 +6,10 @@ use super::catalog::Catalog;
 use super::profile::FILE;
 use super::program::Program;
 use super::program::locate;
+use super::spec::Spec;
 use super::version;
 use crate::error::Error;
-use crate::session::{Options, Spec};
+use crate::session::Options;
 
 /// A solver as a program.
 #[derive(Clone, PartialEq, Eq, Debug)]
