@@ -7,6 +7,7 @@ mod expr;
 mod formula;
 mod ids;
 pub mod lower;
+mod names;
 mod objective;
 pub mod prelude;
 #[allow(clippy::module_inception)]

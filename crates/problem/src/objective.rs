@@ -3,6 +3,7 @@
 use crate::expr::PathLeaf;
 use crate::formula::{Formula, Node};
 use crate::ids::{PathId, SystemId};
+use crate::names::names;
 use hyperplan_syntax::Span;
 use typed_index_collections::TiVec;
 
@@ -61,32 +62,7 @@ pub enum Semantics {
     HaltingOptimistic,
 }
 
-impl Semantics {
-    /// All of them.
-    pub const ALL: [Semantics; 4] = [
-        Semantics::Pessimistic,
-        Semantics::Optimistic,
-        Semantics::HaltingPessimistic,
-        Semantics::HaltingOptimistic,
-    ];
-
-    /// Its name in problem files.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Semantics::Pessimistic => "pes",
-            Semantics::Optimistic => "opt",
-            Semantics::HaltingPessimistic => "hpes",
-            Semantics::HaltingOptimistic => "hopt",
-        }
-    }
-
-    /// The one with that name.
-    #[must_use]
-    pub fn named(name: &str) -> Option<Semantics> {
-        Semantics::ALL.into_iter().find(|s| s.name() == name)
-    }
-}
+names!(pub Semantics: Pessimistic "pes", Optimistic "opt", HaltingPessimistic "hpes", HaltingOptimistic "hopt");
 
 /// An objective: a quantifier prefix and a formula.
 #[derive(Clone, Debug)]

@@ -181,12 +181,8 @@ pub struct Template {
     pub name: Ident,
     /// Its parameters: labels or numbers, told apart by use.
     pub params: Vec<Ident>,
-    /// Definitions inside the braces.
-    pub defines: Vec<Define>,
-    /// Quantifiers, outermost first.
-    pub quantifiers: Vec<Quantifier>,
-    /// The quantifier-free rest.
-    pub body: Expr,
+    /// What stands between the braces.
+    pub formula: Formula,
     /// Comment lines (`//`) that stand directly above the template, without the slashes.
     pub doc: String,
 }
@@ -219,14 +215,7 @@ pub struct Objective {
 #[derive(Clone, Debug, PartialEq)]
 pub enum ObjectiveBody {
     /// `{ QUANTIFIERS BODY }`
-    Formula {
-        /// Definitions inside the braces.
-        defines: Vec<Define>,
-        /// Quantifiers, outermost first, one entry a path variable.
-        quantifiers: Vec<Quantifier>,
-        /// The quantifier-free rest.
-        body: Expr,
-    },
+    Formula(Formula),
     /// `= TEMPLATE(args);`
     Instance {
         /// The template.
@@ -234,6 +223,17 @@ pub enum ObjectiveBody {
         /// Its arguments.
         args: Vec<Expr>,
     },
+}
+
+/// `DEFINES QUANTIFIERS BODY`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Formula {
+    /// Definitions.
+    pub defines: Vec<Define>,
+    /// Quantifiers, outermost first, one entry a path variable.
+    pub quantifiers: Vec<Quantifier>,
+    /// The quantifier-free rest.
+    pub body: Expr,
 }
 
 /// One quantified path variable.

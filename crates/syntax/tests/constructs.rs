@@ -4,7 +4,7 @@ mod common;
 
 use common::{good, names, show, show_set};
 use hyperplan_syntax::ast::{
-    Clause, File, Item, Objective, ObjectiveBody, Quantifier, System, SystemItem, SystemKind, Type,
+    Clause, File, Formula, Item, Objective, ObjectiveBody, Quantifier, System, SystemItem, SystemKind, Type,
     UpdateValue,
 };
 
@@ -170,7 +170,7 @@ fn objectives() {
          objective d = u();
          objective e { define f(p) = a[p]; define g(p, q) = f(p) & f(q); exists p. f(p) }",
     );
-    let ObjectiveBody::Formula { quantifiers: list, .. } = &objective(&file, 0).body else {
+    let ObjectiveBody::Formula(Formula { quantifiers: list, .. }) = &objective(&file, 0).body else {
         panic!("no formula")
     };
     assert_eq!(quantifiers(list), "Ep:Robot Eq:Robot Ar:W As At Eu");
@@ -181,7 +181,9 @@ fn objectives() {
     assert_eq!(template.name, "t");
     assert_eq!(args.iter().map(show).collect::<Vec<_>>(), ["start", "(+T +1)", "0.5"]);
     assert_eq!(objective(&file, 2).within.as_ref().map(show).as_deref(), Some("K"));
-    let ObjectiveBody::Formula { defines, .. } = &objective(&file, 4).body else { panic!("no formula") };
+    let ObjectiveBody::Formula(Formula { defines, .. }) = &objective(&file, 4).body else {
+        panic!("no formula")
+    };
     assert_eq!(defines.len(), 2);
     assert_eq!(
         (names(&defines[1].params), show(&defines[1].body)),
@@ -208,8 +210,8 @@ template u() { true }",
     let Item::Template(first) = &file.items[0] else { panic!("no template") };
     assert_eq!(first.doc, "The shortest path:\n  equation (6).");
     assert_eq!(names(&first.params), "start,goal,T");
-    assert_eq!(quantifiers(&first.quantifiers), "Ep Aq");
-    assert_eq!((first.defines.len(), show(&first.body)), (1, "(F[0,T] at(p))".to_owned()));
+    assert_eq!(quantifiers(&first.formula.quantifiers), "Ep Aq");
+    assert_eq!((first.formula.defines.len(), show(&first.formula.body)), (1, "(F[0,T] at(p))".to_owned()));
     assert!(matches!(&file.items[1], Item::Define(define) if define.name.name == "reach"));
     assert!(matches!(&file.items[2], Item::Template(template) if template.doc == "Indented."));
     assert!(matches!(&file.items[3], Item::Template(template) if template.doc.is_empty()));

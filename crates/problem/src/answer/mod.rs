@@ -7,13 +7,13 @@ mod witness;
 
 pub use witness::{WitnessError, to_strategy, to_witness, write_state};
 
+use crate::names::names;
 #[cfg(test)]
 use schemars::JsonSchema;
 use serde::de::{Error as _, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 use std::marker::PhantomData;
-use std::str::FromStr;
 
 /// What `hyperplan solve --format json` prints, one object a line for each objective, and what `hyperplan verify` and
 /// `hyperplan plot` read. For reading, `witness` is enough.
@@ -198,43 +198,9 @@ impl States {
     }
 }
 
-/// The names of an enumeration's values: to write, to read, and to list.
-macro_rules! names {
-    ($type:ident: $($value:ident $name:literal),*) => {
-        impl $type {
-            /// All values.
-            pub const ALL: &[Self] = &[$(Self::$value),*];
-
-            /// The value's name, as on the command line and in answers.
-            #[must_use]
-            pub fn name(self) -> &'static str {
-                match self { $(Self::$value => $name),* }
-            }
-        }
-
-        impl fmt::Display for $type {
-            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(self.name())
-            }
-        }
-
-        impl FromStr for $type {
-            type Err = String;
-
-            fn from_str(text: &str) -> Result<Self, String> {
-                let found = Self::ALL.iter().find(|value| value.name() == text);
-                found.copied().ok_or_else(|| {
-                    let names: Vec<&str> = Self::ALL.iter().map(|value| value.name()).collect();
-                    format!("`{text}` is none of {}", names.join(", "))
-                })
-            }
-        }
-    };
-}
-
-names!(Quantifiers: Auto "auto", Keep "keep", Expand "expand", Cegis "cegis");
-names!(Verified: BySearch "by-search", BySolver "by-solver");
-names!(States: Onehot "onehot", Bitvec "bitvec", Int "int", Enum "enum", Real "real");
+names!(pub Quantifiers: Auto "auto", Keep "keep", Expand "expand", Cegis "cegis");
+names!(pub Verified: BySearch "by-search", BySolver "by-solver");
+names!(pub States: Onehot "onehot", Bitvec "bitvec", Int "int", Enum "enum", Real "real");
 
 /// How a witness was checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

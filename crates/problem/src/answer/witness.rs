@@ -10,108 +10,10 @@ use crate::strategy::{Strategy, Trace};
 use crate::system::System;
 use thiserror::Error;
 
-/// Why a witness is none for an objective of a problem. Places are written as in `p, state 3`.
+/// Why a witness is none for an objective of a problem. Places are written as in `path p, state 3`.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum WitnessError {
-    /// The objective has no path variable of that name.
-    #[error("objective {objective} has no path `{path}`; a strategy for it gives {expected}")]
-    UnknownPath {
-        /// The objective.
-        objective: String,
-        /// What was given.
-        path: String,
-        /// What is expected.
-        expected: String,
-    },
-    /// A path variable of the objective, but not of its leading block.
-    #[error("path {path} is quantified after a change of quantifier; a strategy gives {expected} only")]
-    NotLeading {
-        /// What was given.
-        path: String,
-        /// What is expected.
-        expected: String,
-    },
-    /// A path is given twice.
-    #[error("path {0} is given twice")]
-    RepeatedPath(String),
-    /// A path of the leading block is not given.
-    #[error("path {0} is missing")]
-    MissingPath(String),
-    /// Another system than the path's.
-    #[error("path {path} is one of system {expected}, not of `{found}`")]
-    WrongSystem {
-        /// The path.
-        path: String,
-        /// Its system.
-        expected: String,
-        /// What was given.
-        found: String,
-    },
-    /// States and actions do not fit together.
-    #[error(
-        "path {path} has {actions} actions and {states} states; there must be one more state than actions"
-    )]
-    WrongCount {
-        /// The path.
-        path: String,
-        /// Number of actions.
-        actions: usize,
-        /// Number of states.
-        states: usize,
-    },
-    /// The system has no action of that name.
-    #[error("path {path}, action {time}: system {system} has no action `{action}`{hint}")]
-    UnknownAction {
-        /// The path.
-        path: String,
-        /// The step, from 0.
-        time: usize,
-        /// The path's system.
-        system: String,
-        /// What was given.
-        action: String,
-        /// `; did you mean ...?` or nothing.
-        hint: String,
-    },
-    /// The system has no variable of that name.
-    #[error("path {path}, state {time}: system {system} has no variable `{variable}`{hint}")]
-    UnknownVariable {
-        /// The path.
-        path: String,
-        /// The time.
-        time: usize,
-        /// The path's system.
-        system: String,
-        /// What was given.
-        variable: String,
-        /// `; did you mean ...?` or nothing.
-        hint: String,
-    },
-    /// A variable has no value.
-    #[error("path {path}, state {time}: variable {variable} is missing")]
-    MissingVariable {
-        /// The path.
-        path: String,
-        /// The time.
-        time: usize,
-        /// The variable.
-        variable: String,
-    },
-    /// A variable has a value that is not of its type.
-    #[error("path {path}, state {time}: {variable} is {expected}, not {found}")]
-    WrongType {
-        /// The path.
-        path: String,
-        /// The time.
-        time: usize,
-        /// The variable.
-        variable: String,
-        /// Its type, in words.
-        expected: String,
-        /// What was given.
-        found: String,
-    },
-}
+#[error("{0}")]
+pub struct WitnessError(String);
 
 /// A strategy in the names of the problem.
 #[must_use]
@@ -166,12 +68,12 @@ pub fn to_strategy(
     for given in witness {
         let path = find_path(objective, &leading, &given.path)?;
         if traces.iter().any(|t| t.path == path) {
-            return Err(WitnessError::RepeatedPath(given.path.clone()));
+            return Err(WitnessError(format!("path {} is given twice", given.path)));
         }
         traces.push(read_trace(problem, &problem.systems[objective.paths[path].system], path, given)?);
     }
     if let Some(missing) = leading.iter().find(|p| traces.iter().all(|t| t.path != **p)) {
-        return Err(WitnessError::MissingPath(objective.paths[*missing].name.clone()));
+        return Err(WitnessError(format!("path {} is missing", objective.paths[*missing].name)));
     }
     traces.sort_by_key(|t| t.path);
     Ok(Strategy { traces })
@@ -183,14 +85,15 @@ fn find_path(objective: &Objective, leading: &[PathId], name: &str) -> Result<Pa
         names.join(", ")
     };
     match objective.path(name) {
-        None => Err(WitnessError::UnknownPath {
-            objective: objective.name.clone(),
-            path: name.to_owned(),
-            expected: expected(),
-        }),
-        Some(path) if !leading.contains(&path) => {
-            Err(WitnessError::NotLeading { path: name.to_owned(), expected: expected() })
-        }
+        None => Err(WitnessError(format!(
+            "objective {} has no path `{name}`; a strategy for it gives {}",
+            objective.name,
+            expected()
+        ))),
+        Some(path) if !leading.contains(&path) => Err(WitnessError(format!(
+            "path {name} is quantified after a change of quantifier; a strategy gives {} only",
+            expected()
+        ))),
         Some(path) => Ok(path),
     }
 }
@@ -201,72 +104,46 @@ fn read_trace(
     path: PathId,
     given: &WitnessPath,
 ) -> Result<Trace, WitnessError> {
+    let name = &given.path;
+    let error = |what: String| WitnessError(format!("path {name}{what}"));
     if !given.system.is_empty() && given.system != system.name {
-        return Err(WitnessError::WrongSystem {
-            path: given.path.clone(),
-            expected: system.name.clone(),
-            found: given.system.clone(),
-        });
+        return Err(error(format!(" is one of system {}, not of `{}`", system.name, given.system)));
     }
-    if given.states.len() != given.actions.len() + 1 {
-        return Err(WitnessError::WrongCount {
-            path: given.path.clone(),
-            actions: given.actions.len(),
-            states: given.states.len(),
-        });
+    let (actions, states) = (given.actions.len(), given.states.len());
+    if states != actions + 1 {
+        let rule = "there must be one more state than actions";
+        return Err(error(format!(" has {actions} actions and {states} states; {rule}")));
     }
     let actions = given.actions.iter().enumerate();
-    let actions = actions.map(|(t, a)| read_action(problem, system, &given.path, t, a));
+    let actions = actions
+        .map(|(t, a)| read_action(problem, system, a).map_err(|what| error(format!(", action {t}: {what}"))));
     let states = given.states.iter().enumerate();
-    let states = states.map(|(t, s)| read_state(system, &given.path, t, s));
+    let states =
+        states.map(|(t, s)| read_state(system, s).map_err(|what| error(format!(", state {t}: {what}"))));
     Ok(Trace { path, actions: actions.collect::<Result<_, _>>()?, states: states.collect::<Result<_, _>>()? })
 }
 
-fn read_action(
-    problem: &Problem,
-    system: &System,
-    path: &str,
-    time: usize,
-    name: &str,
-) -> Result<ActionId, WitnessError> {
+/// The action of that name, or why there is none.
+fn read_action(problem: &Problem, system: &System, name: &str) -> Result<ActionId, String> {
     let found = system.actions.iter().copied().find(|&a| problem.actions[a] == name);
-    found.ok_or_else(|| WitnessError::UnknownAction {
-        path: path.to_owned(),
-        time,
-        system: system.name.clone(),
-        action: name.to_owned(),
-        hint: hint(name, system.actions.iter().map(|&a| problem.actions[a].as_str())),
+    found.ok_or_else(|| {
+        let hint = hint(name, system.actions.iter().map(|&a| problem.actions[a].as_str()));
+        format!("system {} has no action `{name}`{hint}", system.name)
     })
 }
 
-fn read_state(
-    system: &System,
-    path: &str,
-    time: usize,
-    given: &Ordered<Scalar>,
-) -> Result<State, WitnessError> {
+/// The state, or why it is none.
+fn read_state(system: &System, given: &Ordered<Scalar>) -> Result<State, String> {
     if let Some((name, _)) = given.0.iter().find(|(name, _)| system.var(name).is_none()) {
-        return Err(WitnessError::UnknownVariable {
-            path: path.to_owned(),
-            time,
-            system: system.name.clone(),
-            variable: name.clone(),
-            hint: hint(name, system.vars.iter().map(|v| v.name.as_str())),
-        });
+        let hint = hint(name, system.vars.iter().map(|v| v.name.as_str()));
+        return Err(format!("system {} has no variable `{name}`{hint}", system.name));
     }
     let crash: Option<VarId> = system.map.as_ref().and_then(|m| m.crash);
     let read = |(id, var): (VarId, &crate::system::Var)| match given.get(&var.name) {
         None if crash == Some(id) => Ok(Value::Bool(false)),
-        None => {
-            Err(WitnessError::MissingVariable { path: path.to_owned(), time, variable: var.name.clone() })
-        }
-        Some(value) => read_value(&var.ty, value).ok_or_else(|| WitnessError::WrongType {
-            path: path.to_owned(),
-            time,
-            variable: var.name.clone(),
-            expected: type_in_words(&var.ty),
-            found: value.to_string(),
-        }),
+        None => Err(format!("variable {} is missing", var.name)),
+        Some(value) => read_value(&var.ty, value)
+            .ok_or_else(|| format!("{} is {}, not {value}", var.name, type_in_words(&var.ty))),
     };
     system.vars.iter_enumerated().map(read).collect()
 }

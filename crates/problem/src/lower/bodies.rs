@@ -28,13 +28,13 @@ pub(super) fn check(file: &File, shared: &Shared, diagnostics: &mut Diagnostics)
                 check_define(define, Scope { params: &[], defines: &[] }, shared, diagnostics);
             }
             Item::Template(template) => {
-                let scope = Scope { params: &template.params, defines: &template.defines };
-                for define in &template.defines {
+                let scope = Scope { params: &template.params, defines: &template.formula.defines };
+                for define in scope.defines {
                     check_define(define, scope, shared, diagnostics);
                 }
-                names(&template.body, scope, shared, diagnostics);
+                names(&template.formula.body, scope, shared, diagnostics);
                 let bodies: Vec<&Expr> =
-                    template.defines.iter().map(|define| &define.body).chain([&template.body]).collect();
+                    scope.defines.iter().map(|define| &define.body).chain([&template.formula.body]).collect();
                 for param in &template.params {
                     if !bodies.iter().any(|body| mentions(body, &param.name)) {
                         diagnostics.push_where_none(unused(param));

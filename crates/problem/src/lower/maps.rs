@@ -235,10 +235,10 @@ fn named_moves(names: &[Ident], env: &mut Env) -> Vec<Move> {
 }
 
 fn named_rule(name: &Ident, env: &mut Env) -> Option<Rule> {
-    let rule = Rule::named(&name.name);
+    let rule = name.name.parse().ok();
     if rule.is_none() {
         let diagnostic = Diagnostic::error("unknown-rule", name.span, format!("no rule `{}`", name.name));
-        env.diagnostics.push(suggest(diagnostic, &name.name, Rule::NAMES));
+        env.diagnostics.push(suggest(diagnostic, &name.name, Rule::ALL.map(Rule::name)));
     }
     rule
 }

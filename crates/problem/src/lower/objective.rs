@@ -32,9 +32,7 @@ pub(super) struct Shared<'a> {
 
 /// What an objective says, be it by itself or by a template.
 struct Body<'a> {
-    defines: &'a [ast::Define],
-    quantifiers: &'a [ast::Quantifier],
-    body: &'a ast::Expr,
+    formula: &'a ast::Formula,
     bindings: Bindings<'a>,
     consts: Consts,
 }
@@ -47,8 +45,8 @@ pub(super) fn lower_objective(
 ) -> Option<Objective> {
     let mode = mode(shared, ast, diagnostics);
     let body = match &ast.body {
-        ObjectiveBody::Formula { defines, quantifiers, body } => {
-            Body { defines, quantifiers, body, bindings: Bindings::default(), consts: shared.consts.clone() }
+        ObjectiveBody::Formula(formula) => {
+            Body { formula, bindings: Bindings::default(), consts: shared.consts.clone() }
         }
         ObjectiveBody::Instance { template: name, args } => {
             let Some(template) = shared.templates.get(name.name.as_str()) else {
@@ -59,8 +57,7 @@ pub(super) fn lower_objective(
             };
             let (bindings, consts) = bind(template, name, args, shared.consts, diagnostics)?;
             diagnostics.enter_use(name.span, format!("in this instance of `{}`", name.name));
-            let (defines, quantifiers) = (&template.defines, &template.quantifiers);
-            Body { defines, quantifiers, body: &template.body, bindings, consts }
+            Body { formula: &template.formula, bindings, consts }
         }
     };
     let objective = lower_body(shared, ast, &body, mode, diagnostics);
@@ -77,7 +74,7 @@ fn mode(
     diagnostics: &mut Diagnostics,
 ) -> Option<(Mode, Option<Semantics>)> {
     let semantics = ast.semantics.as_ref().map(|name| {
-        let known = Semantics::named(&name.name);
+        let known = name.name.parse().ok();
         if known.is_none() {
             let message = format!("no semantics `{}`", name.name);
             let diagnostic = Diagnostic::error("unknown-name", name.span, message);
@@ -105,15 +102,15 @@ fn lower_body(
     mode: Option<(Mode, Option<Semantics>)>,
     diagnostics: &mut Diagnostics,
 ) -> Option<Objective> {
-    if body.quantifiers.is_empty() {
+    if body.formula.quantifiers.is_empty() {
         let message = "the objective has no path";
         let diagnostic = Diagnostic::error("no-path", ast.name.span, message);
         diagnostics.push(diagnostic.with_help("begin it with `exists p.` or `forall p.`"));
         return None;
     }
-    let defines = visible_defines(shared, body.defines, diagnostics);
+    let defines = visible_defines(shared, &body.formula.defines, diagnostics);
     let (paths, frame) = paths(shared, body, diagnostics);
-    let complete = paths.len() == body.quantifiers.len();
+    let complete = paths.len() == body.formula.quantifiers.len();
     let mut cx = PathContext {
         systems: shared.systems,
         poisoned: shared.poisoned,
@@ -131,7 +128,7 @@ fn lower_body(
         diagnostics,
         limits: Limits::default(),
     };
-    cx.formula(body.body)?;
+    cx.formula(&body.formula.body)?;
     let (paths, formula) = (cx.paths, cx.formula);
     if !complete {
         return None;
@@ -186,9 +183,10 @@ fn paths<'a>(
 ) -> (TiVec<PathId, PathVar>, Frame<'a>) {
     let mut paths: TiVec<PathId, PathVar> = TiVec::new();
     let mut frame = Frame { paths: Vec::new(), parameters: true };
-    for (index, quantifier) in body.quantifiers.iter().enumerate() {
+    let quantifiers = &body.formula.quantifiers;
+    for (index, quantifier) in quantifiers.iter().enumerate() {
         let path = &quantifier.path;
-        if let Some(first) = body.quantifiers[..index].iter().find(|q| q.path.name == path.name) {
+        if let Some(first) = quantifiers[..index].iter().find(|q| q.path.name == path.name) {
             diagnostics.push(duplicate("path", path, first.path.span));
             continue;
         }

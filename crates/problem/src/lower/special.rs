@@ -6,6 +6,7 @@ use super::paths::PathContext;
 use super::typed::{self as make, Typed};
 use crate::expr::{Expr, Leaf, PathLeaf};
 use crate::ids::{ActionId, PathId};
+use crate::names::names;
 use crate::system::System;
 use hyperplan_syntax::ast::{self, CompareOp, ExprKind, Ident, Set};
 use hyperplan_syntax::{Diagnostic, Span};
@@ -18,30 +19,13 @@ enum Special {
     Obs,
 }
 
-impl Special {
-    fn named(name: &str) -> Option<Self> {
-        match name {
-            "action" => Some(Special::Action),
-            "state" => Some(Special::State),
-            "obs" => Some(Special::Obs),
-            _ => None,
-        }
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Special::Action => "action",
-            Special::State => "state",
-            Special::Obs => "obs",
-        }
-    }
-}
+names!(pub(crate) Special: Action "action", State "state", Obs "obs");
 
 type Side<'e> = (Special, &'e Ident, &'e [Ident], Span);
 
 fn side(e: &ast::Expr) -> Option<Side<'_>> {
     match &e.kind {
-        ExprKind::At(name, paths) => Some((Special::named(&name.name)?, name, paths, e.span)),
+        ExprKind::At(name, paths) => Some((name.name.parse().ok()?, name, paths, e.span)),
         _ => None,
     }
 }

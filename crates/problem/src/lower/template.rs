@@ -27,7 +27,7 @@ pub(super) struct Bindings<'a> {
 fn kinds(template: &ast::Template, diagnostics: &mut Diagnostics) -> Vec<Option<(Kind, Span)>> {
     let mut kinds: FxHashMap<&str, Option<(Kind, Span)>> =
         template.params.iter().map(|p| (p.name.as_str(), None)).collect();
-    let bodies = template.defines.iter().map(|d| &d.body).chain([&template.body]);
+    let bodies = template.formula.defines.iter().map(|d| &d.body).chain([&template.formula.body]);
     for body in bodies {
         visit(body, &mut |e| {
             let (name, kind, span) = match &e.kind {
@@ -59,9 +59,9 @@ pub(super) fn check(template: &ast::Template, diagnostics: &mut Diagnostics) {
         }
     }
     kinds(template, diagnostics);
-    let paths: Vec<&str> = template.quantifiers.iter().map(|q| q.path.name.as_str()).collect();
-    unquantified(&template.body, &paths, diagnostics);
-    for define in &template.defines {
+    let paths: Vec<&str> = template.formula.quantifiers.iter().map(|q| q.path.name.as_str()).collect();
+    unquantified(&template.formula.body, &paths, diagnostics);
+    for define in &template.formula.defines {
         let paths: Vec<&str> = define.params.iter().map(|p| p.name.as_str()).collect();
         unquantified(&define.body, &paths, diagnostics);
     }

@@ -6,8 +6,8 @@
 use super::walk::visit;
 use hyperplan_syntax::Diagnostic;
 use hyperplan_syntax::ast::{
-    Define, Expr, ExprKind, File, Ident, Item, Objective, ObjectiveBody, Set, System, SystemItem, Template,
-    Type, UpdateValue,
+    Expr, ExprKind, File, Formula, Ident, Item, Objective, ObjectiveBody, Set, SystemItem, Template, Type,
+    UpdateValue,
 };
 use rustc_hash::FxHashSet;
 
@@ -67,9 +67,9 @@ fn systems_quantified(file: &File) -> FxHashSet<&str> {
         return all;
     }
     let quantifiers = file.items.iter().flat_map(|item| match item {
-        Item::Template(Template { quantifiers, .. })
-        | Item::Objective(Objective { body: ObjectiveBody::Formula { quantifiers, .. }, .. }) => {
-            &quantifiers[..]
+        Item::Template(Template { formula, .. })
+        | Item::Objective(Objective { body: ObjectiveBody::Formula(formula), .. }) => {
+            &formula.quantifiers[..]
         }
         _ => &[],
     });
@@ -89,78 +89,60 @@ impl<'a> Uses<'a> {
 
     fn item(&mut self, item: &'a Item) {
         match item {
-            Item::Const(item) => self.expr(&item.value),
-            Item::System(item) => self.system(item),
-            Item::Template(item) => {
-                self.defines(&item.defines);
-                self.expr(&item.body);
-            }
-            Item::Define(item) => self.expr(&item.body),
-            Item::Objective(item) => self.objective(item),
-        }
-    }
-
-    fn objective(&mut self, objective: &'a Objective) {
-        objective.within.iter().for_each(|within| self.expr(within));
-        match &objective.body {
-            ObjectiveBody::Formula { defines, body, .. } => {
-                self.defines(defines);
-                self.expr(body);
-            }
-            ObjectiveBody::Instance { template, args } => {
-                self.names.insert(&template.name);
-                args.iter().for_each(|arg| self.expr(arg));
-            }
-        }
-    }
-
-    fn defines(&mut self, defines: &'a [Define]) {
-        defines.iter().for_each(|define| self.expr(&define.body));
-    }
-
-    fn system(&mut self, system: &'a System) {
-        for item in &system.items {
-            match item {
-                SystemItem::State(declared) => {
-                    for declared in declared {
-                        if let Type::Range(lo, hi) = &declared.ty {
-                            self.expr(lo);
-                            self.expr(hi);
-                        }
+            Item::Const(item) => self.exprs([&item.value]),
+            Item::System(item) => item.items.iter().for_each(|item| self.system_item(item)),
+            Item::Define(item) => self.exprs([&item.body]),
+            Item::Template(item) => self.formula(&item.formula),
+            Item::Objective(objective) => {
+                self.exprs(&objective.within);
+                match &objective.body {
+                    ObjectiveBody::Formula(formula) => self.formula(formula),
+                    ObjectiveBody::Instance { template, args } => {
+                        self.names.insert(&template.name);
+                        self.exprs(args);
                     }
                 }
-                SystemItem::On(clause) => {
-                    clause.guard.iter().for_each(|guard| self.expr(guard));
-                    for update in &clause.updates {
-                        match &update.value {
-                            UpdateValue::Assign(e) => self.expr(e),
-                            UpdateValue::Choose(set) => self.set(set),
-                        }
+            }
+        }
+    }
+
+    fn formula(&mut self, formula: &'a Formula) {
+        self.exprs(formula.defines.iter().map(|define| &define.body).chain([&formula.body]));
+    }
+
+    fn system_item(&mut self, item: &'a SystemItem) {
+        match item {
+            SystemItem::State(declared) => {
+                for declared in declared {
+                    if let Type::Range(lo, hi) = &declared.ty {
+                        self.exprs([lo, hi]);
                     }
                 }
-                SystemItem::Init(e) | SystemItem::Label(_, e) | SystemItem::Absorb(e) => self.expr(e),
-                SystemItem::Observe(es) => es.iter().for_each(|e| self.expr(e)),
-                _ => {}
             }
-        }
-    }
-
-    fn set(&mut self, set: &'a Set) {
-        match set {
-            Set::List(es, _) => es.iter().for_each(|e| self.expr(e)),
-            Set::Range(lo, hi) => {
-                self.expr(lo);
-                self.expr(hi);
+            SystemItem::On(clause) => {
+                self.exprs(&clause.guard);
+                for update in &clause.updates {
+                    match &update.value {
+                        UpdateValue::Assign(e) => self.exprs([e]),
+                        UpdateValue::Choose(Set::List(es, _)) => self.exprs(es),
+                        UpdateValue::Choose(Set::Range(lo, hi)) => self.exprs([&**lo, hi]),
+                        UpdateValue::Choose(Set::Enabled(..)) => {}
+                    }
+                }
             }
-            Set::Enabled(..) => {}
-        }
-    }
-
-    fn expr(&mut self, e: &'a Expr) {
-        visit(e, &mut |e| match &e.kind {
-            ExprKind::Name(name) => drop(self.names.insert(name)),
-            ExprKind::At(name, _) | ExprKind::Call(name, _) => drop(self.names.insert(&name.name)),
+            SystemItem::Init(e) | SystemItem::Label(_, e) | SystemItem::Absorb(e) => self.exprs([e]),
+            SystemItem::Observe(es) => self.exprs(es),
             _ => {}
-        });
+        }
+    }
+
+    fn exprs(&mut self, es: impl IntoIterator<Item = &'a Expr>) {
+        for e in es {
+            visit(e, &mut |e| match &e.kind {
+                ExprKind::Name(name) => drop(self.names.insert(name)),
+                ExprKind::At(name, _) | ExprKind::Call(name, _) => drop(self.names.insert(&name.name)),
+                _ => {}
+            });
+        }
     }
 }

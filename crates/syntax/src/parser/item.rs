@@ -2,19 +2,12 @@
 
 use super::recover::{Block, ITEMS, TOP};
 use super::{Abort, Parse, Parser, habit};
-use crate::ast::{Const, Define, Expr, File, Ident, Item, Objective, ObjectiveBody, Quantifier, Template};
+use crate::ast::{Const, Define, File, Formula, Ident, Item, Objective, ObjectiveBody, Quantifier, Template};
 use crate::diagnostic::Diagnostic;
 use crate::operator::Operator;
 use crate::similar::similar;
 use crate::span::Span;
 use crate::token::{EQUALS, Tok, Token};
-
-/// What stands between the braces of an objective or template.
-struct Formula {
-    defines: Vec<Define>,
-    quantifiers: Vec<Quantifier>,
-    body: Expr,
-}
 
 impl Parser<'_> {
     pub(super) fn file(&mut self) -> File {
@@ -125,14 +118,7 @@ impl Parser<'_> {
         let name = self.any_word("the name of the template")?;
         let params = self.parenthesized_names("a parameter")?;
         let formula = self.formula()?;
-        Ok(formula.map(|Formula { defines, quantifiers, body }| Template {
-            name,
-            params,
-            defines,
-            quantifiers,
-            body,
-            doc,
-        }))
+        Ok(formula.map(|formula| Template { name, params, formula, doc }))
     }
 
     fn objective(&mut self) -> Parse<Option<Objective>> {
@@ -151,11 +137,7 @@ impl Parser<'_> {
             }
         }
         let body = if self.peek() == Tok::LBrace {
-            self.formula()?.map(|Formula { defines, quantifiers, body }| ObjectiveBody::Formula {
-                defines,
-                quantifiers,
-                body,
-            })
+            self.formula()?.map(ObjectiveBody::Formula)
         } else {
             Some(self.instance(within.is_some())?)
         };

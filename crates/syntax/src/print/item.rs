@@ -2,14 +2,7 @@
 
 use super::layout::Indent;
 use super::{Printer, end, start};
-use crate::ast::{Define, Expr, Ident, Item, Objective, ObjectiveBody, Quantifier, Template};
-
-/// What stands between the braces of an objective or template.
-struct Formula<'t> {
-    defines: &'t [Define],
-    quantifiers: &'t [Quantifier],
-    body: &'t Expr,
-}
+use crate::ast::{Define, Formula, Ident, Item, Objective, ObjectiveBody, Quantifier, Template};
 
 impl Printer<'_> {
     pub(super) fn item(&mut self, item: &Item) {
@@ -43,10 +36,8 @@ impl Printer<'_> {
         self.layout.text(format!("template {}(", template.name.name));
         self.names(&template.params, ",");
         self.layout.text(")");
-        let formula =
-            Formula { defines: &template.defines, quantifiers: &template.quantifiers, body: &template.body };
         let head = template.params.last().unwrap_or(&template.name);
-        self.formula(&formula, head.span.end as usize);
+        self.formula(&template.formula, head.span.end as usize);
     }
 
     fn objective(&mut self, objective: &Objective) {
@@ -63,9 +54,7 @@ impl Printer<'_> {
             head = semantics.span.end as usize;
         }
         match &objective.body {
-            ObjectiveBody::Formula { defines, quantifiers, body } => {
-                self.formula(&Formula { defines, quantifiers, body }, head);
-            }
+            ObjectiveBody::Formula(formula) => self.formula(formula, head),
             ObjectiveBody::Instance { template, args } => {
                 self.layout.text(format!(" = {}(", template.name));
                 self.exprs(args);
@@ -76,7 +65,7 @@ impl Printer<'_> {
     }
 
     /// `{ DEFINES QUANTIFIERS BODY }`; the braces open behind `head`.
-    fn formula(&mut self, formula: &Formula<'_>, head: usize) {
+    fn formula(&mut self, formula: &Formula, head: usize) {
         let (open, close) = self.source.braces(head);
         let (first, inner) = match formula.quantifiers.first() {
             Some(Quantifier { path, .. }) => {
@@ -84,7 +73,7 @@ impl Printer<'_> {
                 (self.source.word_before(inner), inner)
             }
             None => {
-                let inner = start(formula.body);
+                let inner = start(&formula.body);
                 (self.source.opening(inner), inner)
             }
         };
@@ -96,7 +85,7 @@ impl Printer<'_> {
             self.layout.open(Indent::By(0));
             self.layout.text(" {");
             self.layout.soft_indented(2);
-            self.quantifiers(formula.quantifiers);
+            self.quantifiers(&formula.quantifiers);
             self.body(formula, 4);
             self.layout.soft();
             self.layout.text("}");
@@ -104,20 +93,20 @@ impl Printer<'_> {
             return;
         }
         self.open_block();
-        for define in formula.defines {
+        for define in &formula.defines {
             self.define(define);
         }
         self.begin_up_to(first, inner);
         self.layout.open(Indent::By(0));
-        self.quantifiers(formula.quantifiers);
+        self.quantifiers(&formula.quantifiers);
         self.body(formula, 2);
         self.layout.close();
         self.close_block(close);
     }
 
     /// The body behind the quantifiers; on a line of its own where it has one, or needs one.
-    fn body(&mut self, formula: &Formula<'_>, indent: usize) {
-        let body = formula.body;
+    fn body(&mut self, formula: &Formula, indent: usize) {
+        let body = &formula.body;
         if let Some(last) = formula.quantifiers.last() {
             let last = last.system.as_ref().unwrap_or(&last.path).span.end as usize;
             let first = start(body);

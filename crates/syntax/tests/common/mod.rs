@@ -38,7 +38,7 @@ pub fn formula(text: &str) -> String {
     let file = good(&format!("objective o {{ {text} }}"));
     match &file.items[..] {
         [Item::Objective(objective)] => match &objective.body {
-            ObjectiveBody::Formula { body, .. } => show(body),
+            ObjectiveBody::Formula(formula) => show(&formula.body),
             other => panic!("{other:?}"),
         },
         other => panic!("{other:?}"),

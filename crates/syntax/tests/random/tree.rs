@@ -2,9 +2,9 @@
 
 use hyperplan_random::Random;
 use hyperplan_syntax::ast::{
-    ArithOp, BinaryOp, Clause, CompareOp, Const, Define, Expr, ExprKind, File, Ident, Interval, Item,
-    Objective, ObjectiveBody, Quantifier, Set, StateDecl, System, SystemItem, SystemKind, Template, Text,
-    Type, UnaryOp, Update, UpdateValue,
+    ArithOp, BinaryOp, Clause, CompareOp, Const, Define, Expr, ExprKind, File, Formula, Ident, Interval,
+    Item, Objective, ObjectiveBody, Quantifier, Set, StateDecl, System, SystemItem, SystemKind, Template,
+    Text, Type, UnaryOp, Update, UpdateValue,
 };
 use hyperplan_syntax::{SourceId, Span};
 
@@ -66,9 +66,7 @@ fn item(random: &mut Random) -> Item {
         2 => Item::Template(Template {
             name: ident(random),
             params: idents(random, 0),
-            defines: defines(random),
-            quantifiers: quantifiers(random),
-            body: expr(random, 5),
+            formula: formula(random, 5),
             doc: random.one(&["", "One line.", "Several\n\n  lines."]).to_owned(),
         }),
         3 => Item::Define(define(random)),
@@ -93,6 +91,10 @@ fn quantifiers(random: &mut Random) -> Vec<Quantifier> {
     (0..random.below(5)).map(|_| one(random)).collect()
 }
 
+fn formula(random: &mut Random, depth: u32) -> Formula {
+    Formula { defines: defines(random), quantifiers: quantifiers(random), body: expr(random, depth) }
+}
+
 fn objective(random: &mut Random) -> Objective {
     let within = random.flip().then(|| expr(random, 3));
     let semantics = if within.is_some() && random.flip() { Some(ident(random)) } else { None };
@@ -100,11 +102,7 @@ fn objective(random: &mut Random) -> Objective {
         let args = (0..random.below(4)).map(|_| expr(random, 2)).collect();
         ObjectiveBody::Instance { template: ident(random), args }
     } else {
-        ObjectiveBody::Formula {
-            defines: defines(random),
-            quantifiers: quantifiers(random),
-            body: expr(random, 6),
-        }
+        ObjectiveBody::Formula(formula(random, 6))
     };
     Objective { name: ident(random), within, semantics, body }
 }

@@ -1,5 +1,7 @@
 //! The moves of a map, and what happens where one is not possible.
 
+use crate::names::names;
+
 /// A move: its action name and where it leads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Move {
@@ -40,17 +42,4 @@ pub(crate) enum Rule {
     Crash,
 }
 
-impl Rule {
-    /// The names of the rules in the language.
-    pub(crate) const NAMES: [&'static str; 3] = ["undefined", "stay", "crash"];
-
-    /// The rule of that name.
-    pub(crate) fn named(name: &str) -> Option<Self> {
-        match name {
-            "undefined" => Some(Rule::Undefined),
-            "stay" => Some(Rule::Stay),
-            "crash" => Some(Rule::Crash),
-            _ => None,
-        }
-    }
-}
+names!(pub(crate) Rule: Undefined "undefined", Stay "stay", Crash "crash");
