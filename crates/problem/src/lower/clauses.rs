@@ -50,7 +50,7 @@ fn clause_actions(
                 let message = format!("no action `{}` in system {}", name.name, system.name);
                 let candidates = system.actions.iter().map(|id| actions.names[*id].as_str());
                 let diagnostic = Diagnostic::error("unknown-action", name.span, message);
-                cx.error(suggest(diagnostic, &name.name, candidates));
+                cx.diagnostics.push(suggest(diagnostic, &name.name, candidates));
             }
         }
     }
@@ -63,8 +63,7 @@ fn repeated_update(cx: &mut StateContext, clause: &ast::Clause) -> Option<()> {
         if let Some(first) = clause.updates[..index].iter().find(|u| u.var.name == update.var.name) {
             let message = format!("a second update of `{}`", update.var.name);
             let diagnostic = Diagnostic::error("repeated-update", update.var.span, message);
-            cx.error(diagnostic.with_related(first.var.span, "the first one"));
-            return None;
+            return cx.error(diagnostic.with_related(first.var.span, "the first one"));
         }
     }
     Some(())
@@ -76,8 +75,7 @@ fn lower_update(cx: &mut StateContext, update: &ast::Update) -> Option<(VarId, U
         Some((Leaf::Label(_), declared)) => {
             let message = format!("`{}` is a label; only variables can be updated", update.var.name);
             let diagnostic = Diagnostic::error("not-a-variable", update.var.span, message);
-            cx.error(diagnostic.with_related(declared, "declared here"));
-            return None;
+            return cx.error(diagnostic.with_related(declared, "declared here"));
         }
         None => {
             if !cx.poisoned {
@@ -85,7 +83,7 @@ fn lower_update(cx: &mut StateContext, update: &ast::Update) -> Option<(VarId, U
                 let diagnostic = Diagnostic::error("unknown-name", update.var.span, message);
                 let diagnostic =
                     suggest(diagnostic, &update.var.name, cx.vars.iter().map(|v| v.name.as_str()));
-                cx.error(diagnostic);
+                cx.diagnostics.push(diagnostic);
             }
             return None;
         }
@@ -94,8 +92,7 @@ fn lower_update(cx: &mut StateContext, update: &ast::Update) -> Option<(VarId, U
     let value = match &update.value {
         UpdateValue::Assign(e) => Update::Assign(of_type(cx, e, &ty)?),
         UpdateValue::Choose(Set::List(members, span)) if members.is_empty() => {
-            cx.error(Diagnostic::error("empty-set", *span, "the set is empty"));
-            return None;
+            return cx.error(Diagnostic::error("empty-set", *span, "the set is empty"));
         }
         UpdateValue::Choose(Set::List(members, _)) => {
             let values: Vec<_> = members.iter().map(|m| of_type(cx, m, &ty)).collect();
@@ -104,8 +101,7 @@ fn lower_update(cx: &mut StateContext, update: &ast::Update) -> Option<(VarId, U
         UpdateValue::Choose(Set::Range(lo, hi)) => within(cx, lo, hi, &ty)?,
         UpdateValue::Choose(Set::Enabled(_, span)) => {
             let message = "`enabled[...]` is a set of actions, not of values";
-            cx.error(Diagnostic::error("misplaced-path", *span, message));
-            return None;
+            return cx.error(Diagnostic::error("misplaced-path", *span, message));
         }
     };
     Some((id, value))
@@ -118,13 +114,10 @@ fn of_type(cx: &mut StateContext, e: &ast::Expr, ty: &Type) -> Option<Expr<Leaf>
         Type::Bool | Type::Range { .. } | Type::Int => None,
         Type::Real => return real(cx, e),
     };
-    match (typed(cx, e, hint), ty) {
+    match (typed(cx, e, hint)?, ty) {
         (Typed::Bool(e), Type::Bool) | (Typed::Int(e, _), Type::Range { .. } | Type::Int) => Some(e),
         (Typed::Enum(e, values), Type::Enum(expected)) if values == *expected => Some(e),
-        (found, _) => {
-            mismatch(cx, &found, &expected(ty), e.span);
-            None
-        }
+        (found, _) => mismatch(cx, &found, &expected(ty), e.span),
     }
 }
 
@@ -152,13 +145,11 @@ fn within(cx: &mut StateContext, lo: &ast::Expr, hi: &ast::Expr, ty: &Type) -> O
         }
         Type::Bool | Type::Enum(_) => {
             let message = format!("expected {}, found a range of numbers", expected(ty));
-            cx.error(Diagnostic::error("type-mismatch", span, message));
-            return None;
+            return cx.error(Diagnostic::error("type-mismatch", span, message));
         }
     };
     if let Some(empty) = empty_range(&from, &to) {
-        cx.error(Diagnostic::error("empty-range", span, empty));
-        return None;
+        return cx.error(Diagnostic::error("empty-range", span, empty));
     }
     match (from, to) {
         (Typed::Int(from, _) | Typed::Real(from), Typed::Int(to, _) | Typed::Real(to)) => {

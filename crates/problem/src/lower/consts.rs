@@ -1,7 +1,7 @@
 //! Constants: numbers, known when the file is read.
 
 use super::diagnostics::{Diagnostics, suggest};
-use super::expr::{Context, enter, integer, numeric};
+use super::expr::{Context, integer, numeric};
 use super::fractions;
 use super::labels::cyclic;
 use super::limits::Limits;
@@ -56,13 +56,12 @@ impl Consts {
         self.by_name.get(name).copied()
     }
 
-    /// As an expression; poisoned where the value was refused.
-    pub(crate) fn typed<L>(&self, name: &str) -> Option<Typed<L>> {
-        let constant = self.get(name)?;
-        Some(match constant.value {
-            Some(Value::Int(n)) => Typed::int(n),
-            Some(Value::Real(r)) => Typed::real(r),
-            _ => Typed::Poison,
+    /// As an expression; `Some(None)` where the value was refused.
+    pub(crate) fn typed<L>(&self, name: &str) -> Option<Option<Typed<L>>> {
+        Some(match self.get(name)?.value {
+            Some(Value::Int(n)) => Some(Typed::int(n)),
+            Some(Value::Real(r)) => Some(Typed::real(r)),
+            _ => None,
         })
     }
 
@@ -198,24 +197,12 @@ struct ConstContext<'a> {
 impl Context for ConstContext<'_> {
     type Leaf = Infallible;
 
-    fn diagnostics(&mut self) -> &mut Diagnostics {
-        self.diagnostics
+    fn parts(&mut self) -> (&mut Diagnostics, &mut Limits) {
+        (self.diagnostics, &mut self.limits)
     }
 
-    fn enter(&mut self, span: Span) -> bool {
-        enter(&mut self.limits, self.diagnostics, span)
-    }
-
-    fn leave(&mut self) {
-        self.limits.leave();
-    }
-
-    fn resolve(&mut self, name: &str, _span: Span) -> Option<Typed<Infallible>> {
+    fn resolve(&mut self, name: &str) -> Option<Option<Typed<Infallible>>> {
         self.consts.typed(name)
-    }
-
-    fn is_enum_value(&self, _name: &str) -> bool {
-        false
     }
 
     fn unknown(&mut self, name: &str, span: Span) -> Diagnostic {
@@ -226,7 +213,7 @@ impl Context for ConstContext<'_> {
         suggest(diagnostic, name, self.consts.names.iter().map(String::as_str))
     }
 
-    fn at(&mut self, name: &Ident, _paths: &[Ident], span: Span) -> Typed<Infallible> {
+    fn at(&mut self, name: &Ident, _paths: &[Ident], span: Span) -> Option<Typed<Infallible>> {
         self.varies(&name.name, span)
     }
 
@@ -236,13 +223,13 @@ impl Context for ConstContext<'_> {
         _args: &[Ident],
         _hint: Option<&EnumType>,
         span: Span,
-    ) -> Typed<Infallible> {
+    ) -> Option<Typed<Infallible>> {
         self.varies(&name.name, span)
     }
 }
 
 impl ConstContext<'_> {
-    fn varies(&mut self, name: &str, span: Span) -> Typed<Infallible> {
+    fn varies(&mut self, name: &str, span: Span) -> Option<Typed<Infallible>> {
         let message = format!("expected a constant; `{name}` of a path varies");
         self.error(Diagnostic::error("not-constant", span, message))
     }

@@ -29,6 +29,12 @@ impl Diagnostics {
         self.list.push(diagnostic);
     }
 
+    /// Adds a message about something of which nothing comes.
+    pub(crate) fn refuse<T>(&mut self, diagnostic: Diagnostic) -> Option<T> {
+        self.push(diagnostic);
+        None
+    }
+
     /// Enters the text of a definition or template that is used at `span`.
     pub(crate) fn enter_use(&mut self, span: Span, words: String) {
         self.uses.push((span, words));

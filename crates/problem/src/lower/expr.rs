@@ -14,26 +14,22 @@ pub(crate) trait Context {
     /// What expressions read here.
     type Leaf: Clone;
 
-    /// Where messages go.
-    fn diagnostics(&mut self) -> &mut Diagnostics;
-
-    /// Starts a node; `false` where a limit is reached.
-    fn enter(&mut self, span: Span) -> bool;
-
-    /// Ends a node.
-    fn leave(&mut self);
+    /// Where messages go, and what bounds the nodes that are built.
+    fn parts(&mut self) -> (&mut Diagnostics, &mut Limits);
 
     /// A variable, label, constant or parameter; `None` if there is none of that name.
-    fn resolve(&mut self, name: &str, span: Span) -> Option<Typed<Self::Leaf>>;
+    fn resolve(&mut self, name: &str) -> Option<Option<Typed<Self::Leaf>>>;
 
     /// Whether some enumeration in reach has a value of that name.
-    fn is_enum_value(&self, name: &str) -> bool;
+    fn is_enum_value(&self, _name: &str) -> bool {
+        false
+    }
 
     /// The message about a name that stands for nothing here.
     fn unknown(&mut self, name: &str, span: Span) -> Diagnostic;
 
     /// `NAME[PATHS]`
-    fn at(&mut self, name: &Ident, paths: &[Ident], span: Span) -> Typed<Self::Leaf> {
+    fn at(&mut self, name: &Ident, paths: &[Ident], span: Span) -> Option<Typed<Self::Leaf>> {
         let _ = paths;
         let message = format!("`{}` of a path: there are no paths here", name.name);
         self.error(Diagnostic::error("misplaced-path", span, message).with_help("paths belong to objectives"))
@@ -46,7 +42,7 @@ pub(crate) trait Context {
         args: &[Ident],
         hint: Option<&EnumType>,
         span: Span,
-    ) -> Typed<Self::Leaf> {
+    ) -> Option<Typed<Self::Leaf>> {
         let _ = (args, hint);
         let message =
             format!("`{}(...)` is a use of a definition, and those belong to objectives", name.name);
@@ -60,7 +56,7 @@ pub(crate) trait Context {
         a: &ast::Expr,
         b: &ast::Expr,
         span: Span,
-    ) -> Option<Typed<Self::Leaf>> {
+    ) -> Option<Option<Typed<Self::Leaf>>> {
         let _ = (op, a, b, span);
         None
     }
@@ -71,7 +67,7 @@ pub(crate) trait Context {
         element: &ast::Expr,
         set: &ast::Set,
         span: Span,
-    ) -> Option<Typed<Self::Leaf>> {
+    ) -> Option<Option<Typed<Self::Leaf>>> {
         let _ = (element, set, span);
         None
     }
@@ -82,39 +78,38 @@ pub(crate) trait Context {
             .with_help("temporal operators belong to objectives")
     }
 
-    /// Reports and poisons.
-    fn error(&mut self, diagnostic: Diagnostic) -> Typed<Self::Leaf> {
-        self.diagnostics().push(diagnostic);
-        Typed::Poison
+    /// Reports: nothing comes of what was wrong.
+    fn error<T>(&mut self, diagnostic: Diagnostic) -> Option<T> {
+        self.parts().0.refuse(diagnostic)
     }
 }
 
-/// The state that every context needs for [`Context::enter`].
-pub(crate) fn enter(limits: &mut Limits, diagnostics: &mut Diagnostics, span: Span) -> bool {
-    limits.enter(span, diagnostics)
-}
-
-/// Types an expression. `hint` is the enumeration that is expected, if one is: its values need no declaration.
-pub(crate) fn typed<C: Context>(cx: &mut C, e: &ast::Expr, hint: Option<&EnumType>) -> Typed<C::Leaf> {
-    if !cx.enter(e.span) {
-        return Typed::Poison;
+/// Types an expression; `None` after a message, so that whatever contains it comes to nothing too, without a word. `hint` is the enumeration that is expected, if one is: its values need no declaration.
+pub(crate) fn typed<C: Context>(
+    cx: &mut C,
+    e: &ast::Expr,
+    hint: Option<&EnumType>,
+) -> Option<Typed<C::Leaf>> {
+    let (diagnostics, limits) = cx.parts();
+    if !limits.enter(e.span, diagnostics) {
+        return None;
     }
     let result = typed_inner(cx, e, hint);
-    cx.leave();
+    cx.parts().1.leave();
     result
 }
 
-fn typed_inner<C: Context>(cx: &mut C, e: &ast::Expr, hint: Option<&EnumType>) -> Typed<C::Leaf> {
+fn typed_inner<C: Context>(cx: &mut C, e: &ast::Expr, hint: Option<&EnumType>) -> Option<Typed<C::Leaf>> {
     match &e.kind {
-        ExprKind::Bool(b) => Typed::Bool(Expr::Const(Value::Bool(*b))),
+        ExprKind::Bool(b) => Some(Typed::Bool(Expr::Const(Value::Bool(*b)))),
         ExprKind::Number(digits) => number(cx, digits, e.span),
         ExprKind::Name(name) => named(cx, name, e.span, hint),
         ExprKind::Text(name) => quoted(cx, name, e.span, hint),
         ExprKind::At(name, paths) => cx.at(name, paths, e.span),
         ExprKind::Call(name, args) => cx.call(name, args, hint, e.span),
-        ExprKind::Not(a) => truth(cx, a).map_or(Typed::Poison, |a| Typed::Bool(typed::not(a))),
-        ExprKind::And(es) => truths(cx, es).map_or(Typed::Poison, |es| Typed::Bool(typed::and(es))),
-        ExprKind::Or(es) => truths(cx, es).map_or(Typed::Poison, |es| Typed::Bool(typed::or(es))),
+        ExprKind::Not(a) => truth(cx, a).map(|a| Typed::Bool(typed::not(a))),
+        ExprKind::And(es) => truths(cx, es).map(|es| Typed::Bool(typed::and(es))),
+        ExprKind::Or(es) => truths(cx, es).map(|es| Typed::Bool(typed::or(es))),
         ExprKind::Implies(a, b) => both(cx, a, b, |a, b| typed::or([typed::not(a), b])),
         ExprKind::Iff(a, b) => both(cx, a, b, typed::iff),
         ExprKind::Compare(op, a, b) => compare(cx, *op, a, b, e.span),
@@ -136,23 +131,17 @@ fn typed_inner<C: Context>(cx: &mut C, e: &ast::Expr, hint: Option<&EnumType>) -
 
 /// A truth value, or `None` after a message.
 pub(crate) fn truth<C: Context>(cx: &mut C, e: &ast::Expr) -> Option<Expr<C::Leaf>> {
-    match typed(cx, e, None) {
+    match typed(cx, e, None)? {
         Typed::Bool(expr) => Some(expr),
-        other => {
-            mismatch(cx, &other, "a truth value", e.span);
-            None
-        }
+        other => mismatch(cx, &other, "a truth value", e.span),
     }
 }
 
 /// An integer with its bounds, or `None` after a message.
 pub(crate) fn integer<C: Context>(cx: &mut C, e: &ast::Expr) -> Option<Bounded<C::Leaf>> {
-    match typed(cx, e, None) {
+    match typed(cx, e, None)? {
         Typed::Int(expr, bounds) => Some((expr, bounds)),
-        other => {
-            mismatch(cx, &other, "an integer", e.span);
-            None
-        }
+        other => mismatch(cx, &other, "an integer", e.span),
     }
 }
 
@@ -184,31 +173,27 @@ impl<L> Number<L> {
 
 /// A number, or `None` after a message.
 pub(crate) fn numeric<C: Context>(cx: &mut C, e: &ast::Expr) -> Option<Number<C::Leaf>> {
-    match typed(cx, e, None) {
+    match typed(cx, e, None)? {
         Typed::Int(expr, bounds) => Some(Number::Int((expr, bounds))),
         Typed::Real(expr) => Some(Number::Real(expr)),
-        other => {
-            mismatch(cx, &other, "a number", e.span);
-            None
-        }
+        other => mismatch(cx, &other, "a number", e.span),
     }
 }
 
 /// A real number, or `None` after a message.
 pub(crate) fn real<C: Context>(cx: &mut C, e: &ast::Expr) -> Option<Expr<C::Leaf>> {
-    let real = numeric(cx, e)?.real();
-    if real.is_none() {
-        overflow(cx, e.span);
-    }
-    real
+    numeric(cx, e)?.real().or_else(|| overflow(cx, e.span))
 }
 
-/// Says that something of another type was expected, unless it is poisoned.
-pub(crate) fn mismatch<C: Context>(cx: &mut C, found: &Typed<C::Leaf>, expected: &str, span: Span) {
-    if !matches!(found, Typed::Poison) {
-        let message = format!("expected {expected}, found {}", found.describe());
-        cx.error(Diagnostic::error("type-mismatch", span, message));
-    }
+/// Says that something of another type was expected.
+pub(crate) fn mismatch<C: Context, T>(
+    cx: &mut C,
+    found: &Typed<C::Leaf>,
+    expected: &str,
+    span: Span,
+) -> Option<T> {
+    let message = format!("expected {expected}, found {}", found.describe());
+    cx.error(Diagnostic::error("type-mismatch", span, message))
 }
 
 fn truths<C: Context>(cx: &mut C, es: &[ast::Expr]) -> Option<Vec<Expr<C::Leaf>>> {
@@ -222,32 +207,32 @@ fn both<C: Context>(
     a: &ast::Expr,
     b: &ast::Expr,
     make: impl Fn(Expr<C::Leaf>, Expr<C::Leaf>) -> Expr<C::Leaf>,
-) -> Typed<C::Leaf> {
+) -> Option<Typed<C::Leaf>> {
     let (a, b) = (truth(cx, a), truth(cx, b));
-    a.zip(b).map_or(Typed::Poison, |(a, b)| Typed::Bool(make(a, b)))
+    a.zip(b).map(|(a, b)| Typed::Bool(make(a, b)))
 }
 
-fn number<C: Context>(cx: &mut C, digits: &str, span: Span) -> Typed<C::Leaf> {
+fn number<C: Context>(cx: &mut C, digits: &str, span: Span) -> Option<Typed<C::Leaf>> {
     let number = match digits.split_once('.') {
         Some(_) => fractions::decimal(digits).map(Typed::real),
         None => digits.parse().ok().filter(|n| i128::from(*n) <= LIMIT).map(Typed::int),
     };
-    number.unwrap_or_else(|| {
+    number.or_else(|| {
         cx.error(Diagnostic::error("number-too-large", span, "the number does not fit in 62 bits"))
     })
 }
 
-fn named<C: Context>(cx: &mut C, name: &str, span: Span, hint: Option<&EnumType>) -> Typed<C::Leaf> {
+fn named<C: Context>(cx: &mut C, name: &str, span: Span, hint: Option<&EnumType>) -> Option<Typed<C::Leaf>> {
     let value = hint.and_then(|values| Some((values.iter().position(|v| v == name)?, values)));
-    let meant = cx.resolve(name, span);
+    let meant = cx.resolve(name);
     match (value, meant) {
-        (Some((_, values)), Some(Typed::Enum(_, other))) if other == *values => {
+        (Some((_, values)), Some(Some(Typed::Enum(_, other)))) if other == *values => {
             let message = format!("`{name}` is both a value of {} and a variable", braces(values));
             cx.error(Diagnostic::error("ambiguous-name", span, message).with_help("rename one of them"))
         }
         (Some((index, values)), _) => {
             let index = u32::try_from(index).unwrap_or(u32::MAX);
-            Typed::Enum(Expr::Const(Value::Enum(index)), values.clone())
+            Some(Typed::Enum(Expr::Const(Value::Enum(index)), values.clone()))
         }
         (None, Some(meant)) => meant,
         (None, None) if hint.is_none() && cx.is_enum_value(name) => {
@@ -276,7 +261,7 @@ fn no_such_value(name: &str, values: &EnumType, span: Span) -> Diagnostic {
 }
 
 /// A name in quotes: always a value of the enumeration that is expected.
-fn quoted<C: Context>(cx: &mut C, name: &str, span: Span, hint: Option<&EnumType>) -> Typed<C::Leaf> {
+fn quoted<C: Context>(cx: &mut C, name: &str, span: Span, hint: Option<&EnumType>) -> Option<Typed<C::Leaf>> {
     let Some(values) = hint else {
         let message =
             format!("{name:?} names a value of an enumeration or an action, but nothing here says which");
@@ -284,7 +269,7 @@ fn quoted<C: Context>(cx: &mut C, name: &str, span: Span, hint: Option<&EnumType
         return cx.error(Diagnostic::error("ambiguous-name", span, message).with_help(help));
     };
     match values.iter().position(|v| v == name).and_then(|index| u32::try_from(index).ok()) {
-        Some(index) => Typed::Enum(Expr::Const(Value::Enum(index)), values.clone()),
+        Some(index) => Some(Typed::Enum(Expr::Const(Value::Enum(index)), values.clone())),
         None => cx.error(no_such_value(name, values, span)),
     }
 }
@@ -305,21 +290,18 @@ fn operands<C: Context>(
     a: &ast::Expr,
     b: &ast::Expr,
     hint: Option<&EnumType>,
-) -> (Typed<C::Leaf>, Typed<C::Leaf>) {
+) -> Option<(Typed<C::Leaf>, Typed<C::Leaf>)> {
+    // An enumeration value beside something that was refused cannot be judged.
     if hint.is_none() && wants_hint(cx, a) && !wants_hint(cx, b) {
-        let right = typed(cx, b, None);
-        // An enumeration value beside something poisoned cannot be judged.
-        if matches!(right, Typed::Poison) {
-            return (Typed::Poison, right);
-        }
-        return (typed(cx, a, right.enumeration()), right);
+        let right = typed(cx, b, None)?;
+        return Some((typed(cx, a, right.enumeration())?, right));
     }
     let left = typed(cx, a, hint);
-    if matches!(left, Typed::Poison) && wants_hint(cx, b) {
-        return (left, Typed::Poison);
+    if left.is_none() && wants_hint(cx, b) {
+        return None;
     }
-    let right = typed(cx, b, hint.or(left.enumeration()));
-    (left, right)
+    let right = typed(cx, b, hint.or(left.as_ref().and_then(Typed::enumeration)));
+    left.zip(right)
 }
 
 fn compare<C: Context>(
@@ -328,12 +310,12 @@ fn compare<C: Context>(
     a: &ast::Expr,
     b: &ast::Expr,
     span: Span,
-) -> Typed<C::Leaf> {
+) -> Option<Typed<C::Leaf>> {
     if let Some(special) = cx.compare_special(op, a, b, span) {
         return special;
     }
-    let (left, right) = operands(cx, a, b, None);
-    compare_typed(cx, op, left, right, span)
+    let (left, right) = operands(cx, a, b, None)?;
+    compare_typed(cx, op, left, right, span).map(Typed::Bool)
 }
 
 /// Compares two typed operands.
@@ -343,25 +325,21 @@ pub(crate) fn compare_typed<C: Context>(
     left: Typed<C::Leaf>,
     right: Typed<C::Leaf>,
     span: Span,
-) -> Typed<C::Leaf> {
+) -> Option<Expr<C::Leaf>> {
     use typed::compare as make;
     let equality = matches!(op, CompareOp::Eq | CompareOp::Ne);
-    let negate = |e| if op == CompareOp::Ne { typed::not(e) } else { e };
-    match (left, right) {
-        (Typed::Poison, _) | (_, Typed::Poison) => Typed::Poison,
+    let equal = match (left, right) {
         (Typed::Int(a, _), Typed::Int(b, _)) => {
             let (comparison, a, b) = ordered(op, a, b);
-            Typed::Bool(negate(make(comparison, a, b)))
+            make(comparison, a, b)
         }
         (left @ (Typed::Int(..) | Typed::Real(_)), right @ (Typed::Int(..) | Typed::Real(_))) => {
             let reals = as_real(left).zip(as_real(right)).map(|(a, b)| ordered(op, a, b));
             let compared = reals.and_then(|(comparison, a, b)| fractions::compare(comparison, a, b));
-            compared.map_or_else(|| overflow(cx, span), |e| Typed::Bool(negate(e)))
+            compared.or_else(|| overflow(cx, span))?
         }
-        (Typed::Enum(a, t), Typed::Enum(b, u)) if equality && t == u => {
-            Typed::Bool(negate(make(Comparison::Eq, a, b)))
-        }
-        (Typed::Bool(a), Typed::Bool(b)) if equality => Typed::Bool(negate(typed::iff(a, b))),
+        (Typed::Enum(a, t), Typed::Enum(b, u)) if equality && t == u => make(Comparison::Eq, a, b),
+        (Typed::Bool(a), Typed::Bool(b)) if equality => typed::iff(a, b),
         (left, right) => {
             let in_quotes = number_as_value(&left, &right).or_else(|| number_as_value(&right, &left));
             let (left, right) = (left.describe(), right.describe());
@@ -371,12 +349,13 @@ pub(crate) fn compare_typed<C: Context>(
                 format!("only numbers have an order, not {left} and {right}")
             };
             let diagnostic = Diagnostic::error("type-mismatch", span, message);
-            cx.error(match in_quotes {
+            return cx.error(match in_quotes {
                 Some(number) => diagnostic.with_help(format!("write the value in quotes: `\"{number}\"`")),
                 None => diagnostic,
-            })
+            });
         }
-    }
+    };
+    Some(if op == CompareOp::Ne { typed::not(equal) } else { equal })
 }
 
 /// The number, where it was written for an enumeration value of that name.
@@ -386,7 +365,7 @@ fn number_as_value<L>(values: &Typed<L>, number: &Typed<L>) -> Option<i64> {
 }
 
 /// The message about arithmetic that may leave 62 bits.
-pub(crate) fn overflow<C: Context>(cx: &mut C, span: Span) -> Typed<C::Leaf> {
+pub(crate) fn overflow<T>(cx: &mut impl Context, span: Span) -> Option<T> {
     let message = "the value may not fit in 62 bits";
     cx.error(Diagnostic::error("number-too-large", span, message).with_help("make the ranges smaller"))
 }
@@ -410,9 +389,9 @@ fn as_real<L>(number: Typed<L>) -> Option<Expr<L>> {
     }
 }
 
-fn negated<C: Context>(cx: &mut C, a: &ast::Expr, span: Span) -> Typed<C::Leaf> {
-    let Some(a) = numeric(cx, a) else { return Typed::Poison };
-    minus(a).map_or_else(|| overflow(cx, span), Number::typed)
+fn negated<C: Context>(cx: &mut C, a: &ast::Expr, span: Span) -> Option<Typed<C::Leaf>> {
+    let a = numeric(cx, a)?;
+    minus(a).or_else(|| overflow(cx, span)).map(Number::typed)
 }
 
 fn minus<L>(number: Number<L>) -> Option<Number<L>> {
@@ -422,10 +401,10 @@ fn minus<L>(number: Number<L>) -> Option<Number<L>> {
     })
 }
 
-fn sum<C: Context>(cx: &mut C, terms: &[(bool, ast::Expr)], span: Span) -> Typed<C::Leaf> {
+fn sum<C: Context>(cx: &mut C, terms: &[(bool, ast::Expr)], span: Span) -> Option<Typed<C::Leaf>> {
     let parts: Vec<_> = terms.iter().map(|(minus, term)| Some((*minus, numeric(cx, term)?))).collect();
-    let Some(parts) = parts.into_iter().collect::<Option<Vec<_>>>() else { return Typed::Poison };
-    added(parts).map_or_else(|| overflow(cx, span), Number::typed)
+    let parts = parts.into_iter().collect::<Option<Vec<_>>>()?;
+    added(parts).or_else(|| overflow(cx, span)).map(Number::typed)
 }
 
 /// The sum of numbers, of which some count negatively: real where one of them is.
@@ -440,27 +419,33 @@ fn added<L>(parts: Vec<(bool, Number<L>)>) -> Option<Number<L>> {
     typed::sum(parts.into_iter().map(integer).collect::<Option<_>>()?).map(Number::Int)
 }
 
-fn arith<C: Context>(cx: &mut C, op: ArithOp, a: &ast::Expr, b: &ast::Expr, span: Span) -> Typed<C::Leaf> {
+fn arith<C: Context>(
+    cx: &mut C,
+    op: ArithOp,
+    a: &ast::Expr,
+    b: &ast::Expr,
+    span: Span,
+) -> Option<Typed<C::Leaf>> {
     match op {
         ArithOp::Mul => product(cx, a, b, span),
         ArithOp::Divide => fraction(cx, a, b, span),
         ArithOp::Div | ArithOp::Mod => {
             let (left, right) = (integer(cx, a), integer(cx, b));
-            let Some((left, (right, _))) = left.zip(right) else { return Typed::Poison };
+            let (left, (right, _)) = left.zip(right)?;
             let Some(by) = known_int(&right).filter(|by| *by > 0) else {
                 let message = "the divisor must be a positive constant";
                 return cx.error(Diagnostic::error("bad-divisor", b.span, message));
             };
             let divide = if op == ArithOp::Div { typed::quotient } else { typed::remainder };
             let (e, bounds) = divide(left, by);
-            Typed::Int(e, bounds)
+            Some(Typed::Int(e, bounds))
         }
     }
 }
 
-fn product<C: Context>(cx: &mut C, a: &ast::Expr, b: &ast::Expr, span: Span) -> Typed<C::Leaf> {
+fn product<C: Context>(cx: &mut C, a: &ast::Expr, b: &ast::Expr, span: Span) -> Option<Typed<C::Leaf>> {
     let (left, right) = (numeric(cx, a), numeric(cx, b));
-    let Some((left, right)) = left.zip(right) else { return Typed::Poison };
+    let (left, right) = left.zip(right)?;
     let product = match (left, right) {
         (Number::Int(a), Number::Int(b)) => match (known_int(&a.0), known_int(&b.0)) {
             (Some(factor), _) => typed::scale(factor, b).map(Number::Int),
@@ -476,25 +461,25 @@ fn product<C: Context>(cx: &mut C, a: &ast::Expr, b: &ast::Expr, span: Span) -> 
             None => None,
         },
     };
-    product.map_or_else(|| overflow(cx, span), Number::typed)
+    product.or_else(|| overflow(cx, span)).map(Number::typed)
 }
 
-fn nonlinear<C: Context>(cx: &mut C, span: Span) -> Typed<C::Leaf> {
+fn nonlinear<C: Context>(cx: &mut C, span: Span) -> Option<Typed<C::Leaf>> {
     let message = "a product of two things that vary is not linear";
     let diagnostic = Diagnostic::error("nonlinear", span, message);
     cx.error(diagnostic.with_help("one side of `*` must be a constant"))
 }
 
 /// `a / b`, a real number.
-fn fraction<C: Context>(cx: &mut C, a: &ast::Expr, b: &ast::Expr, span: Span) -> Typed<C::Leaf> {
+fn fraction<C: Context>(cx: &mut C, a: &ast::Expr, b: &ast::Expr, span: Span) -> Option<Typed<C::Leaf>> {
     let (left, right) = (real(cx, a), real(cx, b));
-    let Some((left, right)) = left.zip(right) else { return Typed::Poison };
+    let (left, right) = left.zip(right)?;
     let Some(by) = known_real(&right).filter(|by| *by != Rational::ZERO) else {
         let message = "the divisor must be a constant other than 0";
         let help = "for integers there are also `div` (rounds down) and `%` (remainder)";
         return cx.error(Diagnostic::error("bad-divisor", b.span, message).with_help(help));
     };
-    typed::scale_real(by.recip(), left).map_or_else(|| overflow(cx, span), Typed::Real)
+    typed::scale_real(by.recip(), left).or_else(|| overflow(cx, span)).map(Typed::Real)
 }
 
 fn known_real<L>(e: &Expr<L>) -> Option<Rational> {
@@ -510,26 +495,23 @@ fn choice<C: Context>(
     then: &ast::Expr,
     otherwise: &ast::Expr,
     hint: Option<&EnumType>,
-) -> Typed<C::Leaf> {
+) -> Option<Typed<C::Leaf>> {
     let c = truth(cx, condition);
-    let (a, b) = operands(cx, then, otherwise, hint);
-    let Some(c) = c else { return Typed::Poison };
-    match (a, b) {
-        (Typed::Poison, _) | (_, Typed::Poison) => Typed::Poison,
+    let (c, (a, b)) = c.zip(operands(cx, then, otherwise, hint))?;
+    Some(match (a, b) {
         (Typed::Bool(a), Typed::Bool(b)) => Typed::Bool(typed::choice(c, a, b)),
         (Typed::Int(a, ab), Typed::Int(b, bb)) => {
             Typed::Int(typed::choice(c, a, b), ab.zip(bb).map(|(a, b)| a.hull(b)))
         }
         (a @ (Typed::Int(..) | Typed::Real(_)), b @ (Typed::Int(..) | Typed::Real(_))) => {
-            match as_real(a).zip(as_real(b)) {
-                Some((a, b)) => Typed::Real(typed::choice(c, a, b)),
-                None => overflow(cx, then.span.to(otherwise.span)),
-            }
+            let span = then.span.to(otherwise.span);
+            let (a, b) = as_real(a).zip(as_real(b)).or_else(|| overflow(cx, span))?;
+            Typed::Real(typed::choice(c, a, b))
         }
         (Typed::Enum(a, t), Typed::Enum(b, u)) if t == u => Typed::Enum(typed::choice(c, a, b), t),
         (a, b) => {
             let message = format!("one case is {}, the other {}", a.describe(), b.describe());
-            cx.error(Diagnostic::error("type-mismatch", then.span.to(otherwise.span), message))
+            return cx.error(Diagnostic::error("type-mismatch", then.span.to(otherwise.span), message));
         }
-    }
+    })
 }

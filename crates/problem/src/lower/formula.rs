@@ -1,6 +1,6 @@
 //! Formulas: temporal operators and Boolean structure become nodes, the rest atoms.
 
-use super::expr::{Context, mismatch, typed};
+use super::expr::{mismatch, typed};
 use super::limits::MAX_BOUND;
 use super::paths::PathContext;
 use super::typed::Typed;
@@ -19,11 +19,11 @@ const LOOK_THROUGH: u32 = 1_000;
 impl<'a> PathContext<'a> {
     /// Adds a formula; `None` after a message.
     pub(super) fn formula(&mut self, e: &'a ast::Expr) -> Option<FormulaId> {
-        if !self.enter(e.span) {
+        if !self.limits.enter(e.span, self.diagnostics) {
             return None;
         }
         let id = self.formula_inner(e);
-        self.leave();
+        self.limits.leave();
         id
     }
 
@@ -102,12 +102,9 @@ impl<'a> PathContext<'a> {
 
     /// A Boolean expression without temporal operators.
     fn atom(&mut self, e: &ast::Expr) -> Option<Expr<PathLeaf>> {
-        match typed(self, e, None) {
+        match typed(self, e, None)? {
             Typed::Bool(expr) => Some(expr),
-            other => {
-                mismatch(self, &other, "a formula", e.span);
-                None
-            }
+            other => mismatch(self, &other, "a formula", e.span),
         }
     }
 
@@ -178,8 +175,7 @@ impl<'a> PathContext<'a> {
             let help =
                 format!("give it an interval, such as `{op}[0,T]`, or the objective a length: `within K`");
             let diagnostic = Diagnostic::error("unbounded-operator", span, message);
-            self.diagnostics.push(diagnostic.with_help(help));
-            return None;
+            return self.diagnostics.refuse(diagnostic.with_help(help));
         };
         let lo = match &interval.lo {
             Some(lo) => self.bound(lo),
@@ -189,8 +185,7 @@ impl<'a> PathContext<'a> {
         if lo > hi {
             let message = format!("the interval [{lo},{hi}] is empty");
             let span = self.blame(&interval.hi).unwrap_or(interval.span);
-            self.diagnostics.push(Diagnostic::error("empty-interval", span, message));
-            return None;
+            return self.diagnostics.refuse(Diagnostic::error("empty-interval", span, message));
         }
         Some(Interval { lo, hi: Some(hi) })
     }
@@ -232,6 +227,5 @@ pub(super) fn number_of_steps(
     } else {
         return u32::try_from(value).ok();
     };
-    diagnostics.push(diagnostic);
-    None
+    diagnostics.refuse(diagnostic)
 }

@@ -48,8 +48,7 @@ fn read_file(ast: &ast::System, file: &Text, env: &mut Env) -> Option<GridMap> {
     }
     if lines.is_empty() {
         let message = format!("the map file `{}` is empty", file.text);
-        env.diagnostics.push(Diagnostic::error("bad-map", file.span, message));
-        return None;
+        return env.diagnostics.refuse(Diagnostic::error("bad-map", file.span, message));
     }
     let legend = legend(ast, Format::Text, env)?;
     grid::from_rows(&lines, Format::Text, &legend, whole, env.diagnostics)
@@ -67,8 +66,7 @@ pub(super) fn load_text(path: &str, span: Span, env: &mut Env) -> Option<String>
             Diagnostic::error("cannot-read", span, format!("cannot read `{path}`: {reason}")).with_help(help)
         }
     };
-    env.diagnostics.push(diagnostic);
-    None
+    env.diagnostics.refuse(diagnostic)
 }
 
 /// The lines of a text with their places, without line ends.

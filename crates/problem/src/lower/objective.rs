@@ -52,8 +52,11 @@ pub(super) fn lower_objective(
             let Some(template) = shared.templates.get(name.name.as_str()) else {
                 let message = format!("no template `{}`", name.name);
                 let diagnostic = Diagnostic::error("unknown-template", name.span, message);
-                diagnostics.push(suggest(diagnostic, &name.name, shared.template_names.iter().copied()));
-                return None;
+                return diagnostics.refuse(suggest(
+                    diagnostic,
+                    &name.name,
+                    shared.template_names.iter().copied(),
+                ));
             };
             let (bindings, consts) = bind(template, name, args, shared.consts, diagnostics)?;
             diagnostics.enter_use(name.span, format!("in this instance of `{}`", name.name));
@@ -105,8 +108,7 @@ fn lower_body(
     if body.formula.quantifiers.is_empty() {
         let message = "the objective has no path";
         let diagnostic = Diagnostic::error("no-path", ast.name.span, message);
-        diagnostics.push(diagnostic.with_help("begin it with `exists p.` or `forall p.`"));
-        return None;
+        return diagnostics.refuse(diagnostic.with_help("begin it with `exists p.` or `forall p.`"));
     }
     let defines = visible_defines(shared, &body.formula.defines, diagnostics);
     let (paths, frame) = paths(shared, body, diagnostics);
@@ -151,8 +153,7 @@ fn translate(objective: &mut Objective, diagnostics: &mut Diagnostics) -> Option
             "more than {} parts once definitions are expanded, too many for `semantics`",
             semantics::MAX_SOURCE
         );
-        diagnostics.push(Diagnostic::error("too-large", objective.span, message));
-        return None;
+        return diagnostics.refuse(Diagnostic::error("too-large", objective.span, message));
     }
     objective.formula = semantics::compile(&objective.formula, steps, semantics, objective.paths.keys());
     Some(())

@@ -3,7 +3,7 @@
 use super::base::Actions;
 use super::consts::Consts;
 use super::diagnostics::{Diagnostics, suggest};
-use super::expr::{Context, enter, typed};
+use super::expr::{Context, typed};
 use super::limits::Limits;
 use super::state::has_value;
 use super::template::{Bindings, unquantified_path};
@@ -64,8 +64,7 @@ impl<'a> PathContext<'a> {
             return *path;
         }
         let known: Vec<&str> = self.frame.paths.iter().map(|(name, _)| *name).collect();
-        self.diagnostics.push(unquantified_path(name, &known));
-        None
+        self.diagnostics.refuse(unquantified_path(name, &known))
     }
 
     /// The one path of `NAME[PATHS]`.
@@ -74,8 +73,7 @@ impl<'a> PathContext<'a> {
             return self.path(path);
         }
         let message = format!("`{}` is read of one path, not of {}", name.name, paths.len());
-        self.diagnostics.push(Diagnostic::error("argument-count", span, message));
-        None
+        self.diagnostics.refuse(Diagnostic::error("argument-count", span, message))
     }
 
     /// The system of a path.
@@ -84,17 +82,17 @@ impl<'a> PathContext<'a> {
     }
 
     /// A variable or label of a path.
-    fn read(&mut self, name: &str, span: Span, path: PathId) -> Typed<PathLeaf> {
+    fn read(&mut self, name: &str, span: Span, path: PathId) -> Option<Typed<PathLeaf>> {
         let system = self.system(path);
         let leaf = |leaf| Expr::Leaf(PathLeaf::State(path, leaf));
         if let Some(var) = system.var(name) {
-            return Typed::of_type(leaf(Leaf::Var(var)), &system.vars[var].ty);
+            return Some(Typed::of_type(leaf(Leaf::Var(var)), &system.vars[var].ty));
         }
         if let Some(label) = system.label(name) {
-            return Typed::Bool(leaf(Leaf::Label(label)));
+            return Some(Typed::Bool(leaf(Leaf::Label(label))));
         }
         if self.poisoned[self.paths[path].system] {
-            return Typed::Poison;
+            return None;
         }
         let message = format!("no label or variable `{name}` in system {}", system.name);
         let diagnostic = Diagnostic::error("unknown-name", span, message);
@@ -121,15 +119,15 @@ impl<'a> PathContext<'a> {
     }
 
     /// The label that a template's parameter stands for.
-    fn argument(&mut self, param: &Ident, actual: &str, span: Span, path: PathId) -> Typed<PathLeaf> {
-        match self.read(actual, span, path) {
+    fn argument(&mut self, param: &Ident, actual: &str, span: Span, path: PathId) -> Option<Typed<PathLeaf>> {
+        match self.read(actual, span, path)? {
             Typed::Int(..) | Typed::Enum(..) => {
                 let message =
                     format!("`{}` stands for a label, and `{actual}` is no truth value", param.name);
                 let diagnostic = Diagnostic::error("parameter-kind", span, message);
                 self.error(diagnostic.with_related(param.span, "used as a label here"))
             }
-            read => read,
+            read => Some(read),
         }
     }
 
@@ -146,24 +144,20 @@ impl<'a> PathContext<'a> {
                 Diagnostic::error("unknown-name", name.span, format!("no definition `{}`", name.name));
             if let ([path], true) = (args, self.is_read_of_paths(&name.name)) {
                 let help = format!("write `{}[{}]`", name.name, path.name);
-                self.diagnostics.push(diagnostic.with_help(help));
-                return None;
+                return self.diagnostics.refuse(diagnostic.with_help(help));
             }
             let mut known: Vec<&str> = self.defines.keys().copied().collect();
             known.sort_unstable();
-            self.diagnostics.push(suggest(diagnostic, &name.name, known));
-            return None;
+            return self.diagnostics.refuse(suggest(diagnostic, &name.name, known));
         };
         if self.expanding.contains(&define.name.name.as_str()) {
             let message = format!("the definition `{}` uses itself", name.name);
-            self.diagnostics.push(Diagnostic::error("cyclic-define", name.span, message));
-            return None;
+            return self.diagnostics.refuse(Diagnostic::error("cyclic-define", name.span, message));
         }
         if args.len() != define.params.len() {
             let message = format!("`{}` takes {} paths, not {}", name.name, define.params.len(), args.len());
             let diagnostic = Diagnostic::error("argument-count", span, message);
-            self.diagnostics.push(diagnostic.with_related(define.name.span, "defined here"));
-            return None;
+            return self.diagnostics.refuse(diagnostic.with_related(define.name.span, "defined here"));
         }
         let mut paths = Vec::with_capacity(args.len());
         for (param, arg) in define.params.iter().zip(args) {
@@ -183,21 +177,13 @@ impl<'a> PathContext<'a> {
 impl Context for PathContext<'_> {
     type Leaf = PathLeaf;
 
-    fn diagnostics(&mut self) -> &mut Diagnostics {
-        self.diagnostics
+    fn parts(&mut self) -> (&mut Diagnostics, &mut Limits) {
+        (self.diagnostics, &mut self.limits)
     }
 
-    fn enter(&mut self, span: Span) -> bool {
-        enter(&mut self.limits, self.diagnostics, span)
-    }
-
-    fn leave(&mut self) {
-        self.limits.leave();
-    }
-
-    fn resolve(&mut self, name: &str, _span: Span) -> Option<Typed<PathLeaf>> {
+    fn resolve(&mut self, name: &str) -> Option<Option<Typed<PathLeaf>>> {
         // What a system lacks after an error may have been meant.
-        let missing = || self.poisoned.iter().any(|poisoned| *poisoned).then_some(Typed::Poison);
+        let missing = || self.poisoned.iter().any(|poisoned| *poisoned).then_some(None);
         self.visible().typed(name).or_else(missing)
     }
 
@@ -232,7 +218,7 @@ impl Context for PathContext<'_> {
         suggest(diagnostic, name, self.visible().names.iter().map(String::as_str).chain(named))
     }
 
-    fn at(&mut self, name: &Ident, paths: &[Ident], span: Span) -> Typed<PathLeaf> {
+    fn at(&mut self, name: &Ident, paths: &[Ident], span: Span) -> Option<Typed<PathLeaf>> {
         if let [read] = paths
             && self.frame.paths.iter().any(|(path, _)| *path == name.name)
             && !self.frame.paths.iter().any(|(path, _)| *path == read.name)
@@ -242,7 +228,7 @@ impl Context for PathContext<'_> {
             let help = format!("write `{}[{}]`", read.name, name.name);
             return self.error(Diagnostic::error("unknown-name", span, message).with_help(help));
         }
-        let Some(path) = self.one_path(name, paths, span) else { return Typed::Poison };
+        let path = self.one_path(name, paths, span)?;
         if let Some(help) = special_help(&name.name) {
             let message = format!("`{}[...]` is no value", name.name);
             return self.error(Diagnostic::error("misplaced-special", span, message).with_help(help));
@@ -257,8 +243,14 @@ impl Context for PathContext<'_> {
         }
     }
 
-    fn call(&mut self, name: &Ident, args: &[Ident], hint: Option<&EnumType>, span: Span) -> Typed<PathLeaf> {
-        self.expand(name, args, span, |cx, body| Some(typed(cx, body, hint))).unwrap_or(Typed::Poison)
+    fn call(
+        &mut self,
+        name: &Ident,
+        args: &[Ident],
+        hint: Option<&EnumType>,
+        span: Span,
+    ) -> Option<Typed<PathLeaf>> {
+        self.expand(name, args, span, |cx, body| typed(cx, body, hint))
     }
 
     fn compare_special(
@@ -267,11 +259,16 @@ impl Context for PathContext<'_> {
         a: &ast::Expr,
         b: &ast::Expr,
         span: Span,
-    ) -> Option<Typed<PathLeaf>> {
+    ) -> Option<Option<Typed<PathLeaf>>> {
         self.special_comparison(op, a, b, span)
     }
 
-    fn member_special(&mut self, element: &ast::Expr, set: &Set, span: Span) -> Option<Typed<PathLeaf>> {
+    fn member_special(
+        &mut self,
+        element: &ast::Expr,
+        set: &Set,
+        span: Span,
+    ) -> Option<Option<Typed<PathLeaf>>> {
         self.special_membership(element, set, span)
     }
 

@@ -20,8 +20,11 @@ pub(super) fn read(path: &str, span: Span, yaml: &str, env: &mut Env) -> Option<
     let settings = match settings(yaml) {
         Ok(settings) => settings,
         Err(message) => {
-            env.diagnostics.push(Diagnostic::error("bad-map", span, format!("`{path}`: {message}")));
-            return None;
+            return env.diagnostics.refuse(Diagnostic::error(
+                "bad-map",
+                span,
+                format!("`{path}`: {message}"),
+            ));
         }
     };
     let folder = path.rfind('/').map_or("", |end| &path[..=end]);
@@ -34,16 +37,14 @@ pub(super) fn read(path: &str, span: Span, yaml: &str, env: &mut Env) -> Option<
         Ok(bytes) => bytes,
         Err(reason) => {
             let message = format!("cannot read `{image}`, the picture of `{path}`: {reason}");
-            env.diagnostics.push(Diagnostic::error("cannot-read", span, message));
-            return None;
+            return env.diagnostics.refuse(Diagnostic::error("cannot-read", span, message));
         }
     };
     match pgm::read(&bytes, MAX_CELLS).and_then(|picture| to_map(&picture, &settings)) {
         Ok(map) => Some(map),
         Err(message) => {
             let code = if bytes.starts_with(b"\x89PNG") { "not-supported" } else { "bad-map" };
-            env.diagnostics.push(Diagnostic::error(code, span, format!("`{image}`: {message}")));
-            None
+            env.diagnostics.refuse(Diagnostic::error(code, span, format!("`{image}`: {message}")))
         }
     }
 }

@@ -38,7 +38,7 @@ impl PathContext<'_> {
         a: &ast::Expr,
         b: &ast::Expr,
         span: Span,
-    ) -> Option<Typed<PathLeaf>> {
+    ) -> Option<Option<Typed<PathLeaf>>> {
         let (left, right) = (side(a), side(b));
         let (first, other) = match (left, right) {
             (Some(first), _) => (first, b),
@@ -53,13 +53,12 @@ impl PathContext<'_> {
             (Some(left), Some(right)) if left.0 == right.0 => self.two_paths(left, right, span),
             (Some(left), Some(right)) => {
                 let message = format!("cannot compare `{}` with `{}`", left.0.name(), right.0.name());
-                self.diagnostics.push(Diagnostic::error("type-mismatch", span, message));
-                None
+                self.diagnostics.refuse(Diagnostic::error("type-mismatch", span, message))
             }
             _ => self.with_name(first, other),
         };
         let negate = |e| if op == CompareOp::Ne { make::not(e) } else { e };
-        Some(equal.map_or(Typed::Poison, |e| Typed::Bool(negate(e))))
+        Some(equal.map(|e| Typed::Bool(negate(e))))
     }
 
     /// The same special of two paths.
@@ -84,8 +83,7 @@ impl PathContext<'_> {
         let (s, t) = (&self.system(p).name, &self.system(q).name);
         let message = format!("states of two systems, {s} and {t}, cannot be compared");
         let diagnostic = Diagnostic::error("type-mismatch", span, message);
-        self.diagnostics.push(diagnostic.with_help("compare variables, such as `x[p] == x[q]`"));
-        None
+        self.diagnostics.refuse(diagnostic.with_help("compare variables, such as `x[p] == x[q]`"))
     }
 
     /// The conjunction of equalities of what the two systems' `observe` items list.
@@ -104,8 +102,7 @@ impl PathContext<'_> {
         if s.observe.len() != t.observe.len() {
             let (m, n) = (s.observe.len(), t.observe.len());
             let message = format!("system {} lists {m} observations, system {} lists {n}", s.name, t.name);
-            self.diagnostics.push(Diagnostic::error("type-mismatch", span, message));
-            return None;
+            return self.diagnostics.refuse(Diagnostic::error("type-mismatch", span, message));
         }
         if p == q {
             return Some(Expr::TRUE);
@@ -113,10 +110,7 @@ impl PathContext<'_> {
         let mut equalities = Vec::with_capacity(s.observe.len());
         for (a, b) in s.observe.iter().zip(&t.observe) {
             let (a, b) = (observed(s, p, a), observed(t, q, b));
-            match compare_typed(self, CompareOp::Eq, a, b, span) {
-                Typed::Bool(e) => equalities.push(e),
-                _ => return None,
-            }
+            equalities.push(compare_typed(self, CompareOp::Eq, a, b, span)?);
         }
         Some(make::and(equalities))
     }
@@ -131,14 +125,14 @@ impl PathContext<'_> {
             };
             let message = format!("cannot compare `{}` with this", special.name());
             let diagnostic = Diagnostic::error("type-mismatch", other.span, message);
-            self.diagnostics.push(diagnostic.with_help(help));
-            return None;
+            return self.diagnostics.refuse(diagnostic.with_help(help));
         };
         if special != Special::Action {
             let message = format!("cannot compare `{}` with `{action}`", special.name());
             let help = format!("compare it with another path's `{}`", special.name());
-            self.diagnostics.push(Diagnostic::error("type-mismatch", other.span, message).with_help(help));
-            return None;
+            return self
+                .diagnostics
+                .refuse(Diagnostic::error("type-mismatch", other.span, message).with_help(help));
         }
         let path = path?;
         if action == "none" {
@@ -161,8 +155,7 @@ impl PathContext<'_> {
         let message = format!("no action `{name}` in system {}", system.name);
         let candidates = system.actions.iter().map(|id| self.actions.names[*id].as_str());
         let diagnostic = suggest(Diagnostic::error("unknown-action", span, message), name, candidates);
-        self.diagnostics.push(diagnostic);
-        None
+        self.diagnostics.refuse(diagnostic)
     }
 
     /// `up in enabled[p]` and `action[p] in {up, down}`; `None` for an ordinary set.
@@ -171,7 +164,7 @@ impl PathContext<'_> {
         element: &ast::Expr,
         set: &Set,
         span: Span,
-    ) -> Option<Typed<PathLeaf>> {
+    ) -> Option<Option<Typed<PathLeaf>>> {
         if let Set::Enabled(path, _) = set {
             let path = self.path(path);
             let (ExprKind::Name(name) | ExprKind::Text(name)) = &element.kind else {
@@ -180,7 +173,7 @@ impl PathContext<'_> {
             };
             let action = path.and_then(|path| Some((path, self.action(name, element.span, path)?)));
             let leaf = action.map(|(path, action)| Expr::Leaf(PathLeaf::Enabled(path, action)));
-            return Some(leaf.map_or(Typed::Poison, Typed::Bool));
+            return Some(leaf.map(Typed::Bool));
         }
         let special = side(element)?;
         let Set::List(members, _) = set else {
@@ -189,7 +182,7 @@ impl PathContext<'_> {
         };
         let cases: Vec<_> = members.iter().map(|m| self.with_name(special, m)).collect();
         let cases: Option<Vec<_>> = cases.into_iter().collect();
-        Some(cases.map_or(Typed::Poison, |cases| Typed::Bool(make::or(cases))))
+        Some(cases.map(|cases| Typed::Bool(make::or(cases))))
     }
 }
 

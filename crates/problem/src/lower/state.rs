@@ -2,7 +2,7 @@
 
 use super::consts::Consts;
 use super::diagnostics::{Diagnostics, suggest};
-use super::expr::{Context, enter};
+use super::expr::Context;
 use super::limits::Limits;
 use super::typed::Typed;
 use crate::expr::{Expr, Leaf, Type};
@@ -65,23 +65,17 @@ pub(crate) struct StateContext<'a> {
 impl Context for StateContext<'_> {
     type Leaf = Leaf;
 
-    fn diagnostics(&mut self) -> &mut Diagnostics {
-        self.diagnostics
+    fn parts(&mut self) -> (&mut Diagnostics, &mut Limits) {
+        (self.diagnostics, &mut self.limits)
     }
 
-    fn enter(&mut self, span: Span) -> bool {
-        enter(&mut self.limits, self.diagnostics, span)
-    }
-
-    fn leave(&mut self) {
-        self.limits.leave();
-    }
-
-    fn resolve(&mut self, name: &str, _span: Span) -> Option<Typed<Leaf>> {
+    fn resolve(&mut self, name: &str) -> Option<Option<Typed<Leaf>>> {
         match self.names.get(name) {
-            Some((leaf @ Leaf::Var(id), _)) => Some(Typed::of_type(Expr::Leaf(leaf), &self.vars[id].ty)),
-            Some((leaf @ Leaf::Label(_), _)) => Some(Typed::Bool(Expr::Leaf(leaf))),
-            None => self.consts.typed(name).or(self.poisoned.then_some(Typed::Poison)),
+            Some((leaf @ Leaf::Var(id), _)) => {
+                Some(Some(Typed::of_type(Expr::Leaf(leaf), &self.vars[id].ty)))
+            }
+            Some((leaf @ Leaf::Label(_), _)) => Some(Some(Typed::Bool(Expr::Leaf(leaf)))),
+            None => self.consts.typed(name).or(self.poisoned.then_some(None)),
         }
     }
 

@@ -84,7 +84,7 @@ fn declare(cx: &mut StateContext, name: &Ident, leaf: Leaf) -> bool {
     if RESERVED.contains(&name.name.as_str()) {
         let message =
             format!("`{}` has a meaning of its own in objectives: no {what} can have that name", name.name);
-        cx.error(Diagnostic::error("reserved-name", name.span, message));
+        cx.diagnostics.push(Diagnostic::error("reserved-name", name.span, message));
         return false;
     }
     let clash = match cx.names.get(&name.name) {
@@ -93,7 +93,7 @@ fn declare(cx: &mut StateContext, name: &Ident, leaf: Leaf) -> bool {
         None => cx.consts.get(&name.name).map(|constant| duplicate("constant", name, constant.span)),
     };
     if let Some(diagnostic) = clash {
-        cx.error(diagnostic);
+        cx.diagnostics.push(diagnostic);
         return false;
     }
     cx.names.declare(&name.name, leaf, name.span).is_ok()
@@ -132,15 +132,13 @@ fn lower_type(cx: &mut StateContext, declaration: &ast::StateDecl) -> Option<Typ
             } else {
                 return Some(Type::Range { lo, hi });
             };
-            cx.error(diagnostic);
-            None
+            cx.error(diagnostic)
         }
         ast::Type::Enum(values) => {
             let mut seen = FxHashMap::default();
             for value in values {
                 if let Some(first) = seen.insert(value.name.as_str(), value.span) {
-                    cx.error(duplicate("value", value, first));
-                    return None;
+                    return cx.error(duplicate("value", value, first));
                 }
             }
             Some(Type::Enum(values.iter().map(|v| v.name.clone()).collect()))
@@ -166,9 +164,9 @@ fn actions(
             if name.name == "none" {
                 let message =
                     "`none` says in objectives that no action was taken: no action can have that name";
-                cx.error(Diagnostic::error("reserved-name", name.span, message));
+                cx.diagnostics.push(Diagnostic::error("reserved-name", name.span, message));
             } else if let Some(first) = places.get(name.name.as_str()) {
-                cx.error(duplicate("action", name, *first));
+                cx.diagnostics.push(duplicate("action", name, *first));
             } else {
                 places.insert(name.name.clone(), name.span);
                 declared.push(known.intern(&name.name));
@@ -226,12 +224,9 @@ fn lower_item(
         }
         SystemItem::Observe(es) => {
             for e in es {
-                match typed(cx, e, None) {
-                    Typed::Bool(e) | Typed::Int(e, _) | Typed::Real(e) | Typed::Enum(e, _) => {
-                        system.observe.push(e);
-                    }
-                    Typed::Poison => {}
-                }
+                let Some(typed) = typed(cx, e, None) else { continue };
+                let (Typed::Bool(e) | Typed::Int(e, _) | Typed::Real(e) | Typed::Enum(e, _)) = typed;
+                system.observe.push(e);
             }
         }
         SystemItem::Moves(names) => only_maps(cx, kind, "moves", names.first()),
@@ -249,6 +244,7 @@ fn only_maps(cx: &mut StateContext, kind: &SystemKind, item: &str, at: Option<&I
     if let (SystemKind::Plain | SystemKind::Graph(_), Some(at)) = (kind, at) {
         let message = format!("`{item}` belongs to maps");
         let diagnostic = Diagnostic::error("misplaced-item", at.span, message);
-        cx.error(diagnostic.with_help("a map is declared as `system NAME = grid(\"file\") { ... }`"));
+        cx.diagnostics
+            .push(diagnostic.with_help("a map is declared as `system NAME = grid(\"file\") { ... }`"));
     }
 }

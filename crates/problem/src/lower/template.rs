@@ -101,8 +101,7 @@ pub(super) fn bind<'a>(
         let params: Vec<&str> = template.params.iter().map(|p| p.name.as_str()).collect();
         let message = format!("`{}` takes {}, not {}", name.name, count(params.len()), args.len());
         let help = format!("its parameters are ({})", params.join(", "));
-        diagnostics.push(Diagnostic::error("argument-count", name.span, message).with_help(help));
-        return None;
+        return diagnostics.refuse(Diagnostic::error("argument-count", name.span, message).with_help(help));
     }
     let kinds = kinds(template, diagnostics);
     let mut bindings = Bindings::default();

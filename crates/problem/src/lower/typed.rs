@@ -61,8 +61,6 @@ pub(crate) enum Typed<L> {
     Real(Expr<L>),
     /// A value of an enumeration.
     Enum(Expr<L>, EnumType),
-    /// Something that was reported already; whatever contains it is poisoned too, without a word.
-    Poison,
 }
 
 impl<L> Typed<L> {
@@ -94,7 +92,6 @@ impl<L> Typed<L> {
             Typed::Int(..) => "an integer".into(),
             Typed::Real(_) => "a real number".into(),
             Typed::Enum(_, values) => format!("one of {}", braces(values)),
-            Typed::Poison => "unknown".into(),
         }
     }
 
