@@ -183,11 +183,7 @@ impl<N> Printer<'_, N> {
 
     fn finish(mut self) -> String {
         if self.full() {
-            let mut end = MAX_LENGTH;
-            while !self.out.is_char_boundary(end) {
-                end -= 1;
-            }
-            self.out.truncate(end);
+            self.out.truncate(self.out.floor_char_boundary(MAX_LENGTH));
             self.out += "...";
         }
         self.out
@@ -243,35 +239,14 @@ impl<N> Printer<'_, N> {
                 p.infix(a, comparison(*op), b, level::SUM, ty);
             }
             Expr::Add(es) => p.sum(es),
-            Expr::Mul(-1, a) => {
-                p.out.push('-');
-                p.expr(a, level::OPERAND, None);
-            }
-            Expr::Mul(c, a) => {
-                p.out += &format!("{c} * ");
-                p.expr(a, level::OPERAND, None);
-            }
-            Expr::Scale(c, a) if *c == -Rational::ONE => {
-                p.out.push('-');
-                p.expr(a, level::OPERAND, None);
-            }
-            Expr::Scale(c, a) if c.is_integer() || *c.numer() != 1 => {
-                p.out += &format!("{c} * ");
-                p.expr(a, level::OPERAND, None);
-            }
-            Expr::Scale(c, a) => {
-                p.expr(a, level::OPERAND, None);
-                p.out += &format!(" / {}", c.denom());
-            }
+            Expr::Mul(-1, a) => p.operand("-", a, ""),
+            Expr::Mul(c, a) => p.operand(&format!("{c} * "), a, ""),
+            Expr::Scale(c, a) if *c == -Rational::ONE => p.operand("-", a, ""),
+            Expr::Scale(c, a) if c.is_integer() || *c.numer() != 1 => p.operand(&format!("{c} * "), a, ""),
+            Expr::Scale(c, a) => p.operand("", a, &format!(" / {}", c.denom())),
             Expr::ToReal(a) => p.expr(a, place, ty),
-            Expr::Div(a, c) => {
-                p.expr(a, level::OPERAND, None);
-                p.out += &format!(" div {c}");
-            }
-            Expr::Mod(a, c) => {
-                p.expr(a, level::OPERAND, None);
-                p.out += &format!(" % {c}");
-            }
+            Expr::Div(a, c) => p.operand("", a, &format!(" div {c}")),
+            Expr::Mod(a, c) => p.operand("", a, &format!(" % {c}")),
             Expr::If(c, a, b) => {
                 p.out += "if ";
                 p.expr(c, 0, None);
@@ -285,6 +260,16 @@ impl<N> Printer<'_, N> {
                 p.member(es, &types, &set.tuples);
             }
         });
+    }
+
+    /// An operand that binds most tightly, with what stands before and behind it.
+    fn operand<L>(&mut self, before: &str, a: &Expr<L>, behind: &str)
+    where
+        N: Names<L>,
+    {
+        self.out += before;
+        self.expr(a, level::OPERAND, None);
+        self.out += behind;
     }
 
     fn infix<L>(&mut self, a: &Expr<L>, sign: &str, b: &Expr<L>, place: u8, ty: Option<&Type>)

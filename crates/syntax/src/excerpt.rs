@@ -116,7 +116,7 @@ impl Excerpt {
 
 impl Place {
     fn new<'t>(text: &'t str, starts: &[usize], span: Span, line_text: &impl Fn(usize) -> &'t str) -> Place {
-        let on_boundary = |byte: u32| floor_boundary(text, byte as usize);
+        let on_boundary = |byte: u32| text.floor_char_boundary(byte as usize);
         let (start, end) = (on_boundary(span.start), on_boundary(span.end.max(span.start)));
         let line_of = |byte: usize| starts.partition_point(|&start| start <= byte) - 1;
         let within = |line: usize, byte: usize| (byte - starts[line]).min(line_text(line).len());
@@ -138,17 +138,8 @@ fn window(content: &str, place: Option<&Place>, width: usize) -> std::ops::Range
         return 0..content.len();
     }
     let marked = place.map_or(0, |place| place.start);
-    let start = if marked < width * 3 / 4 { 0 } else { floor_boundary(content, marked - width / 2) };
-    start..floor_boundary(content, start + width)
-}
-
-/// The last place between two characters that is not behind the byte `at`.
-fn floor_boundary(text: &str, at: usize) -> usize {
-    let mut at = at.min(text.len());
-    while !text.is_char_boundary(at) {
-        at -= 1;
-    }
-    at
+    let start = if marked < width * 3 / 4 { 0 } else { content.floor_char_boundary(marked - width / 2) };
+    start..content.floor_char_boundary(start + width)
 }
 
 /// The character, or another of the same length in UTF-8 if it could disturb a terminal.

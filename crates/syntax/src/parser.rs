@@ -179,11 +179,16 @@ impl<'a> Parser<'a> {
 
     /// One or more names with commas between them.
     fn names(&mut self, what: &str) -> Parse<Vec<Ident>> {
-        let mut names = vec![self.name(what)?];
+        self.separated(|parser| parser.name(what))
+    }
+
+    /// One or more with commas between them.
+    fn separated<T>(&mut self, mut one: impl FnMut(&mut Self) -> Parse<T>) -> Parse<Vec<T>> {
+        let mut all = vec![one(self)?];
         while self.eat(Tok::Comma).is_some() {
-            names.push(self.name(what)?);
+            all.push(one(self)?);
         }
-        Ok(names)
+        Ok(all)
     }
 
     /// `(NAME, ...)`, possibly empty.

@@ -123,27 +123,26 @@ impl Printer<'_> {
 
     /// Names with `between` between them, in lines that begin at the same place.
     fn names(&mut self, names: &[Ident], between: &'static str) {
-        self.layout.open(Indent::Here);
-        for (nth, name) in names.iter().enumerate() {
-            if nth > 0 {
-                self.layout.text(between);
-                self.layout.fill();
-            }
-            self.comments(name.span.start as usize);
-            self.layout.text(name.name.clone());
-        }
-        self.layout.close();
+        self.separated(names, between, |printer, name| {
+            printer.comments(name.span.start as usize);
+            printer.layout.text(name.name.clone());
+        });
     }
 
     /// Expressions with commas between them.
     fn exprs(&mut self, exprs: &[Expr]) {
+        self.separated(exprs, ",", Self::expr);
+    }
+
+    /// Anything with `between` between, in lines that begin at the same place.
+    fn separated<T>(&mut self, items: &[T], between: &'static str, one: impl Fn(&mut Self, &T)) {
         self.layout.open(Indent::Here);
-        for (nth, expr) in exprs.iter().enumerate() {
+        for (nth, item) in items.iter().enumerate() {
             if nth > 0 {
-                self.layout.text(",");
+                self.layout.text(between);
                 self.layout.fill();
             }
-            self.expr(expr);
+            one(self, item);
         }
         self.layout.close();
     }

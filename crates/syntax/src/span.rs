@@ -87,11 +87,7 @@ impl SourceMap {
     #[must_use]
     pub fn position(&self, span: Span) -> (usize, usize) {
         let text = &self.get(span.source).text;
-        let mut start = (span.start as usize).min(text.len());
-        while !text.is_char_boundary(start) {
-            start -= 1;
-        }
-        let before = &text[..start];
+        let before = &text[..text.floor_char_boundary(span.start as usize)];
         let line = before.bytes().filter(|&b| b == b'\n').count() + 1;
         let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
         (line, column)

@@ -105,7 +105,7 @@ fn names(body: &Expr, scope: Scope<'_>, shared: &Shared, diagnostics: &mut Diagn
             let message = format!("`{name}` is no constant, action or value of an enumeration");
             let error = Diagnostic::error("unknown-name", e.span, message);
             let known = scope.params.iter().map(|param| param.name.as_str());
-            let known = known.chain(shared.consts.names.iter().map(String::as_str));
+            let known = known.chain(shared.consts.names());
             diagnostics.push_where_none(suggest(error, name, known));
         }
         _ => {}

@@ -70,7 +70,7 @@ fn repeated_update(cx: &mut StateContext, clause: &ast::Clause) -> Option<()> {
 }
 
 fn lower_update(cx: &mut StateContext, update: &ast::Update) -> Option<(VarId, Update)> {
-    let id = match cx.names.get(&update.var.name) {
+    let id = match cx.names.get(&update.var.name).copied() {
         Some((Leaf::Var(id), _)) => id,
         Some((Leaf::Label(_), declared)) => {
             let message = format!("`{}` is a label; only variables can be updated", update.var.name);

@@ -11,6 +11,7 @@ use super::walk::visit;
 use crate::expr::{Expr, Value};
 use hyperplan_syntax::ast::{self, ExprKind, Ident, Item};
 use hyperplan_syntax::{Diagnostic, Span};
+use indexmap::IndexMap;
 use rustc_hash::FxHashMap;
 use std::convert::Infallible;
 
@@ -47,8 +48,7 @@ pub(crate) struct Constant {
 /// The constants of a file, in its order.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Consts {
-    pub(crate) names: Vec<String>,
-    pub(crate) by_name: FxHashMap<String, Constant>,
+    by_name: IndexMap<String, Constant>,
 }
 
 impl Consts {
@@ -67,15 +67,16 @@ impl Consts {
 
     /// Adds or hides.
     pub(crate) fn insert(&mut self, name: &str, constant: Constant) {
-        if self.by_name.insert(name.to_owned(), constant).is_none() {
-            self.names.push(name.to_owned());
-        }
+        self.by_name.insert(name.to_owned(), constant);
     }
 
     /// Names and values.
     pub(crate) fn values(&self) -> Vec<(String, Value)> {
-        let value = |name: &String| Some((name.clone(), self.get(name)?.value?));
-        self.names.iter().filter_map(value).collect()
+        self.by_name.iter().filter_map(|(name, constant)| Some((name.clone(), constant.value?))).collect()
+    }
+
+    pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
+        self.by_name.keys().map(String::as_str)
     }
 
     /// The value of a constant integer expression, or `None` after a message.
@@ -207,10 +208,10 @@ impl Context for ConstContext<'_> {
 
     fn unknown(&mut self, name: &str, span: Span) -> Diagnostic {
         let diagnostic = Diagnostic::error("unknown-name", span, format!("no constant `{name}`"));
-        if self.consts.names.is_empty() {
+        if self.consts.by_name.is_empty() {
             return diagnostic.with_help(format!("declare it: `const {name} = ...;`"));
         }
-        suggest(diagnostic, name, self.consts.names.iter().map(String::as_str))
+        suggest(diagnostic, name, self.consts.names())
     }
 
     fn at(&mut self, name: &Ident, _paths: &[Ident], span: Span) -> Option<Typed<Infallible>> {

@@ -11,7 +11,8 @@ use crate::ids::{ActionId, VarId};
 use crate::system::{Label, Var};
 use hyperplan_syntax::ast::{self, Text};
 use hyperplan_syntax::{Diagnostic, Span, is_name};
-use rustc_hash::FxHashMap;
+use indexmap::IndexMap;
+use rustc_hash::{FxBuildHasher, FxHashMap};
 use std::sync::Arc;
 
 /// The only variable of a graph: the state it is in.
@@ -52,12 +53,8 @@ struct Reader<'a, 'e> {
     errors: usize,
 }
 
-/// Names in their order, and the position of each.
-#[derive(Default)]
-struct Table {
-    names: Vec<String>,
-    positions: FxHashMap<String, (u32, Span)>,
-}
+/// Names in their order, and where each stands.
+type Table = IndexMap<String, Span, FxBuildHasher>;
 
 impl Reader<'_, '_> {
     fn error(&mut self, diagnostic: Diagnostic) {
@@ -79,12 +76,12 @@ impl Reader<'_, '_> {
         let transitions = self.required(root, &members, "transitions");
         let states = states.and_then(|states| self.table(states, "state"));
         let actions = actions.and_then(|actions| self.table(actions, "action"));
-        if let Some((_, (_, span))) = actions.as_ref().and_then(|a| a.positions.get_key_value("none")) {
+        if let Some(span) = actions.as_ref().and_then(|a| a.get("none")) {
             let message = "`none` says in objectives that no action was taken: no action can have that name";
             self.error(Diagnostic::error("reserved-name", *span, message));
         }
         let ids: Vec<ActionId> =
-            actions.iter().flat_map(|a| &a.names).map(|name| self.env.actions.intern(name)).collect();
+            actions.iter().flat_map(Table::keys).map(|name| self.env.actions.intern(name)).collect();
         let edges = match (&states, &actions, transitions) {
             (Some(states), Some(actions), Some(all)) => self.transitions(all, states, actions, &ids),
             _ => Vec::new(),
@@ -103,9 +100,9 @@ impl Reader<'_, '_> {
             let message = format!("{} more mistakes of the graph are not shown", self.errors - MAX_ERRORS);
             self.env.diagnostics.push(Diagnostic::error("bad-graph", root.start(), message));
         }
-        let states = states?.names;
+        let states = states?;
         let count = states.len();
-        let node = Var { name: "node".into(), ty: Type::Enum(states.into()), span };
+        let node = Var { name: "node".into(), ty: Type::Enum(states.into_keys().collect()), span };
         Some(Base {
             vars: [node].into_iter().collect(),
             actions: ids,
@@ -183,15 +180,13 @@ impl Reader<'_, '_> {
         for member in members {
             let Some(name) = self.name(member, what) else { continue };
             let span = member.span();
-            if let Some((_, first)) = table.positions.get(&name) {
+            if let Some(first) = table.get(&name) {
                 let message = format!("the {what} `{name}` is listed twice");
                 let diagnostic = Diagnostic::error("duplicate-name", span, message);
                 self.error(diagnostic.with_related(*first, "the first one"));
                 continue;
             }
-            let position = u32::try_from(table.names.len()).unwrap_or(u32::MAX);
-            table.positions.insert(name.clone(), (position, span));
-            table.names.push(name);
+            table.insert(name, span);
         }
         Some(table)
     }
@@ -225,7 +220,7 @@ impl Reader<'_, '_> {
     /// The position of a name that was listed.
     fn known(&mut self, piece: Piece<'_>, table: &Table, what: &str) -> Option<u32> {
         let name = self.name(piece, what)?;
-        let position = table.positions.get(&name).map(|(position, _)| *position);
+        let position = table.get_index_of(&name).and_then(|position| u32::try_from(position).ok());
         if position.is_none() {
             let message = format!("no {what} `{name}` in the graph");
             let diagnostic = Diagnostic::error(
@@ -235,7 +230,7 @@ impl Reader<'_, '_> {
             );
             // Looking for what was meant takes time; beyond the limit nobody sees it.
             let shown = self.errors < MAX_ERRORS;
-            let names = table.names.iter().map(String::as_str);
+            let names = table.keys().map(String::as_str);
             self.error(if shown { suggest(diagnostic, &name, names) } else { diagnostic });
         }
         position

@@ -118,10 +118,8 @@ fn syntax(source: SourceId, text: &str, error: &serde_json::Error) -> Diagnostic
         Some(nth) => text.match_indices('\n').nth(nth).map_or(text.len(), |(at, _)| at + 1),
     };
     // Columns count bytes, the first is 1; 0 stands for the line end before.
-    let mut at = (line_start + error.column()).saturating_sub(1).min(text.trim_end().len());
-    while !text.is_char_boundary(at) {
-        at -= 1;
-    }
+    let at = (line_start + error.column()).saturating_sub(1).min(text.trim_end().len());
+    let at = text.floor_char_boundary(at);
     let length = text[at..].chars().next().map_or(0, char::len_utf8);
     let message = error.to_string();
     let words = message.split(" at line ").next().unwrap_or_default();

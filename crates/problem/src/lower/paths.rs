@@ -215,7 +215,7 @@ impl Context for PathContext<'_> {
             let labels = s.labels.iter().map(|l| l.name.as_str());
             labels.chain(s.vars.iter().map(|v| v.name.as_str()))
         });
-        suggest(diagnostic, name, self.visible().names.iter().map(String::as_str).chain(named))
+        suggest(diagnostic, name, self.visible().names().chain(named))
     }
 
     fn at(&mut self, name: &Ident, paths: &[Ident], span: Span) -> Option<Typed<PathLeaf>> {

@@ -6,48 +6,14 @@ use super::expr::Context;
 use super::limits::Limits;
 use super::typed::Typed;
 use crate::expr::{Expr, Leaf, Type};
-use crate::ids::{LabelId, VarId};
+use crate::ids::VarId;
 use crate::system::Var;
 use hyperplan_syntax::{Diagnostic, Span};
-use rustc_hash::FxHashMap;
+use indexmap::IndexMap;
 use typed_index_collections::TiVec;
 
-/// What the names of one system stand for.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Names {
-    map: FxHashMap<String, (Leaf, Span)>,
-    /// In order of declaration, for suggestions.
-    order: Vec<String>,
-}
-
-impl Names {
-    pub(crate) fn get(&self, name: &str) -> Option<(Leaf, Span)> {
-        self.map.get(name).copied()
-    }
-
-    /// Declares a name; the place of the first declaration where there is one already.
-    pub(crate) fn declare(&mut self, name: &str, leaf: Leaf, span: Span) -> Result<(), Span> {
-        if let Some((_, first)) = self.map.get(name) {
-            return Err(*first);
-        }
-        self.map.insert(name.to_owned(), (leaf, span));
-        self.order.push(name.to_owned());
-        Ok(())
-    }
-
-    /// Renumbers the labels: `new[old]`.
-    pub(crate) fn renumber(&mut self, new: &[LabelId]) {
-        for name in &self.order {
-            if let Some((Leaf::Label(id), _)) = self.map.get_mut(name) {
-                *id = new[usize::from(*id)];
-            }
-        }
-    }
-
-    pub(crate) fn all(&self) -> impl Iterator<Item = &str> {
-        self.order.iter().map(String::as_str)
-    }
-}
+/// What the names of one system stand for, and where they are declared, in the order of declaration.
+pub(crate) type Names = IndexMap<String, (Leaf, Span)>;
 
 /// Typing expressions over one system's state.
 pub(crate) struct StateContext<'a> {
@@ -71,10 +37,10 @@ impl Context for StateContext<'_> {
 
     fn resolve(&mut self, name: &str) -> Option<Option<Typed<Leaf>>> {
         match self.names.get(name) {
-            Some((leaf @ Leaf::Var(id), _)) => {
+            Some(&(leaf @ Leaf::Var(id), _)) => {
                 Some(Some(Typed::of_type(Expr::Leaf(leaf), &self.vars[id].ty)))
             }
-            Some((leaf @ Leaf::Label(_), _)) => Some(Some(Typed::Bool(Expr::Leaf(leaf)))),
+            Some(&(leaf @ Leaf::Label(_), _)) => Some(Some(Typed::Bool(Expr::Leaf(leaf)))),
             None => self.consts.typed(name).or(self.poisoned.then_some(None)),
         }
     }
@@ -85,7 +51,7 @@ impl Context for StateContext<'_> {
 
     fn unknown(&mut self, name: &str, span: Span) -> Diagnostic {
         let message = format!("no variable, label or constant `{name}` in system {}", self.system);
-        let candidates = self.names.all().chain(self.consts.names.iter().map(String::as_str));
+        let candidates = self.names.keys().map(String::as_str).chain(self.consts.names());
         suggest(Diagnostic::error("unknown-name", span, message), name, candidates)
     }
 }

@@ -88,15 +88,16 @@ fn declare(cx: &mut StateContext, name: &Ident, leaf: Leaf) -> bool {
         return false;
     }
     let clash = match cx.names.get(&name.name) {
-        Some((Leaf::Var(_), first)) => Some(duplicate("variable", name, first)),
-        Some((Leaf::Label(_), first)) => Some(duplicate("label", name, first)),
+        Some((Leaf::Var(_), first)) => Some(duplicate("variable", name, *first)),
+        Some((Leaf::Label(_), first)) => Some(duplicate("label", name, *first)),
         None => cx.consts.get(&name.name).map(|constant| duplicate("constant", name, constant.span)),
     };
     if let Some(diagnostic) = clash {
         cx.diagnostics.push(diagnostic);
         return false;
     }
-    cx.names.declare(&name.name, leaf, name.span).is_ok()
+    cx.names.insert(name.name.clone(), (leaf, name.span));
+    true
 }
 
 /// Reads the `state` items.
@@ -198,7 +199,11 @@ fn lower_labels(cx: &mut StateContext, ast: &ast::System, mut labels: Vec<Label>
         labels.push(Label { name: name.name.clone(), expr, span: name.span });
     }
     let (labels, new) = labels::sort(labels, cx.diagnostics);
-    cx.names.renumber(&new);
+    for (leaf, _) in cx.names.values_mut() {
+        if let Leaf::Label(id) = leaf {
+            *id = new[usize::from(*id)];
+        }
+    }
     labels
 }
 

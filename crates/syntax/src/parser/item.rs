@@ -156,10 +156,7 @@ impl Parser<'_> {
         self.expect(Tok::LParen, "`(`")?;
         let mut args = Vec::new();
         if self.eat(Tok::RParen).is_none() {
-            args.push(self.expr()?);
-            while self.eat(Tok::Comma).is_some() {
-                args.push(self.expr()?);
-            }
+            args = self.separated(Self::expr)?;
             self.expect(Tok::RParen, "`,` or `)`")?;
         }
         self.semicolon(Block::File, "the objective", "`;`")?;

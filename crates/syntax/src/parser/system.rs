@@ -111,14 +111,14 @@ impl Parser<'_> {
         self.bump();
         let item = match word {
             "on" => return self.clause(start.span).map(|clause| Some(SystemItem::On(clause))),
-            "state" => SystemItem::State(self.state_decls()?),
+            "state" => SystemItem::State(self.separated(Self::state_decl)?),
             "action" => SystemItem::Action(self.names("the name of an action")?),
             "moves" => SystemItem::Moves(self.names("a move")?),
             "obstacle" => SystemItem::Obstacle(self.name("`undefined`, `stay` or `crash`")?),
             "edge" => SystemItem::Edge(self.name("`undefined`, `stay` or `crash`")?),
             "init" => SystemItem::Init(self.expr()?),
             "absorb" => SystemItem::Absorb(self.expr()?),
-            "observe" => SystemItem::Observe(self.observed()?),
+            "observe" => SystemItem::Observe(self.separated(Self::expr)?),
             "label" => {
                 let name = self.name("the name of a label")?;
                 self.equals()?;
@@ -138,14 +138,6 @@ impl Parser<'_> {
         Ok(Some(item))
     }
 
-    fn observed(&mut self) -> Parse<Vec<Expr>> {
-        let mut observed = vec![self.expr()?];
-        while self.eat(Tok::Comma).is_some() {
-            observed.push(self.expr()?);
-        }
-        Ok(observed)
-    }
-
     fn legend(&mut self) -> Parse<(Text, Option<Ident>)> {
         let token = self.token();
         if token.tok != Tok::Char {
@@ -161,18 +153,12 @@ impl Parser<'_> {
         Ok((letter, Some(self.name("a label or `#`")?)))
     }
 
-    fn state_decls(&mut self) -> Parse<Vec<StateDecl>> {
-        let mut decls = Vec::new();
-        loop {
-            let name = self.name("the name of a state variable")?;
-            self.expect(Tok::Colon, "`:` and a type")?;
-            let start = self.token().span;
-            let ty = self.state_type()?;
-            decls.push(StateDecl { name, ty, ty_span: self.since(start) });
-            if self.eat(Tok::Comma).is_none() {
-                return Ok(decls);
-            }
-        }
+    fn state_decl(&mut self) -> Parse<StateDecl> {
+        let name = self.name("the name of a state variable")?;
+        self.expect(Tok::Colon, "`:` and a type")?;
+        let start = self.token().span;
+        let ty = self.state_type()?;
+        Ok(StateDecl { name, ty, ty_span: self.since(start) })
     }
 
     fn state_type(&mut self) -> Parse<Type> {

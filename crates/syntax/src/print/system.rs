@@ -118,27 +118,21 @@ impl Printer<'_> {
 
     fn state(&mut self, decls: &[StateDecl]) -> usize {
         self.layout.text("state ");
-        self.layout.open(Indent::Here);
-        for (nth, decl) in decls.iter().enumerate() {
-            if nth > 0 {
-                self.layout.text(",");
-                self.layout.fill();
-            }
-            self.comments(decl.name.span.start as usize);
-            self.layout.text(format!("{}: ", decl.name.name));
+        self.separated(decls, ",", |printer, decl| {
+            printer.comments(decl.name.span.start as usize);
+            printer.layout.text(format!("{}: ", decl.name.name));
             match &decl.ty {
-                Type::Bool => self.layout.text("bool"),
-                Type::Int => self.layout.text("int"),
-                Type::Real => self.layout.text("real"),
-                Type::Range(lo, hi) => self.range(lo, hi),
+                Type::Bool => printer.layout.text("bool"),
+                Type::Int => printer.layout.text("int"),
+                Type::Real => printer.layout.text("real"),
+                Type::Range(lo, hi) => printer.range(lo, hi),
                 Type::Enum(values) => {
-                    self.layout.text("{");
-                    self.names(values, ",");
-                    self.layout.text("}");
+                    printer.layout.text("{");
+                    printer.names(values, ",");
+                    printer.layout.text("}");
                 }
             }
-        }
-        self.layout.close();
+        });
         decls.last().map_or(0, |decl| decl.ty_span.end as usize)
     }
 

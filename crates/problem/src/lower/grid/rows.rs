@@ -16,9 +16,10 @@ pub(crate) struct Row<'a> {
 }
 
 /// Whose letters the rows use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Format {
     /// Our own: `.` or space free, `#` or `@` obstacle, `S` and `G` labels.
+    #[default]
     Text,
     /// The terrain of the Moving AI Lab's benchmarks. `.` and `G` are ground and `S` is swamp, which can be walked
     /// on; `@` and `O` are out of bounds, `T` is trees and `W` water, which cannot.
@@ -70,7 +71,7 @@ pub(crate) fn from_rows(
 ) -> Option<GridMap> {
     let width = rectangle(rows, whole, diagnostics)?;
     let height = rows.len();
-    let mut reader = Reader { format, legend: legend.iter().cloned().collect(), ..Reader::new(format) };
+    let mut reader = Reader { format, legend: legend.iter().cloned().collect(), ..Reader::default() };
     // Labels of the legend exist even where no cell carries them; `start` and `goal` only where a letter says so.
     for (_, meaning) in legend {
         if let Meaning::Labelled(label) = meaning {
@@ -138,6 +139,7 @@ fn rectangle(rows: &[Row], whole: Span, diagnostics: &mut Diagnostics) -> Option
 }
 
 /// The map while its cells are read.
+#[derive(Default)]
 struct Reader {
     format: Format,
     legend: FxHashMap<char, Meaning>,
@@ -148,17 +150,6 @@ struct Reader {
 }
 
 impl Reader {
-    fn new(format: Format) -> Self {
-        Reader {
-            format,
-            legend: FxHashMap::default(),
-            obstacles: Vec::new(),
-            labels: Vec::new(),
-            unknown: FxHashSet::default(),
-            failed: false,
-        }
-    }
-
     /// The position of a label, new or known.
     fn label(&mut self, name: &str) -> usize {
         if let Some(index) = self.labels.iter().position(|(label, _)| label == name) {
