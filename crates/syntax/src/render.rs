@@ -6,7 +6,7 @@ use miette::{Diagnostic as Report, GraphicalReportHandler, GraphicalTheme, Label
 use serde::Serialize;
 
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::excerpt::Excerpt;
+use crate::excerpt::{Excerpt, Mark};
 use crate::span::{SourceMap, Span};
 
 /// The diagnostics as text, each with its place, the line marked, and advice.
@@ -64,47 +64,38 @@ impl Shown {
                 elsewhere.push(Shown::place(sources, *span, words, width));
             }
         }
-        let mut shown = Shown {
-            message: diagnostic.message.clone(),
-            code: Some(diagnostic.code),
-            severity,
-            help: diagnostic.help.clone(),
-            excerpt: None,
-            labels: Vec::new(),
-            elsewhere,
-        };
-        shown.mark(sources, &places, width);
+        let mut shown = Shown::marked(sources, diagnostic.message.clone(), severity, &places, width);
+        shown.code = Some(diagnostic.code);
+        shown.help.clone_from(&diagnostic.help);
+        shown.elsewhere = elsewhere;
         shown
     }
 
     fn place(sources: &SourceMap, span: Span, words: &str, width: usize) -> Shown {
-        let mut shown = Shown {
-            message: words.to_owned(),
-            code: None,
-            severity: miette::Severity::Advice,
-            help: None,
-            excerpt: None,
-            labels: Vec::new(),
-            elsewhere: Vec::new(),
-        };
-        shown.mark(sources, &[(span, "")], width);
-        shown
+        Shown::marked(sources, words.to_owned(), miette::Severity::Advice, &[(span, "")], width)
     }
 
-    /// Marks places of one source; the first is the one the message is about.
-    fn mark(&mut self, sources: &SourceMap, places: &[(Span, &str)], width: usize) {
-        let Some((main, _)) = places.first() else { return };
+    /// A message with places of one source marked; the first is the one the message is about.
+    fn marked(
+        sources: &SourceMap,
+        message: String,
+        severity: miette::Severity,
+        places: &[(Span, &str)],
+        width: usize,
+    ) -> Shown {
         let spans: Vec<Span> = places.iter().map(|(span, _)| *span).collect();
-        let excerpt = Excerpt::new(sources.get(main.source), &spans, width);
-        for (nth, ((_, words), mark)) in places.iter().zip(&excerpt.marks).enumerate() {
+        let excerpt = spans.first().map(|main| Excerpt::new(sources.get(main.source), &spans, width));
+        let marks = excerpt.iter().flat_map(|excerpt| &excerpt.marks);
+        let label = |(nth, ((_, words), mark)): (usize, (&(Span, &str), &Mark))| {
             let words = (!words.is_empty()).then(|| (*words).to_owned());
             let span = (mark.offset, mark.length);
-            self.labels.push(match nth {
+            match nth {
                 0 => LabeledSpan::new_primary_with_span(words, span),
                 _ => LabeledSpan::new_with_span(words, span),
-            });
-        }
-        self.excerpt = Some(excerpt);
+            }
+        };
+        let labels = places.iter().zip(marks).enumerate().map(label).collect();
+        Shown { message, code: None, severity, help: None, excerpt, labels, elsewhere: Vec::new() }
     }
 }
 

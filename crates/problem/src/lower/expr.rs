@@ -17,7 +17,8 @@ pub(crate) trait Context {
     /// Where messages go, and what bounds the nodes that are built.
     fn parts(&mut self) -> (&mut Diagnostics, &mut Limits);
 
-    /// A variable, label, constant or parameter; `None` if there is none of that name.
+    /// A variable, label, constant or parameter; `None` if there is none of that name, and `Some(None)` if what it
+    /// stands for was refused already.
     fn resolve(&mut self, name: &str) -> Option<Option<Typed<Self::Leaf>>>;
 
     /// Whether some enumeration in reach has a value of that name.
@@ -84,7 +85,8 @@ pub(crate) trait Context {
     }
 }
 
-/// Types an expression; `None` after a message, so that whatever contains it comes to nothing too, without a word. `hint` is the enumeration that is expected, if one is: its values need no declaration.
+/// Types an expression; `None` after a message, so that whatever contains it comes to nothing too, without a word.
+/// `hint` is the enumeration that is expected, if one is: its values need no declaration.
 pub(crate) fn typed<C: Context>(
     cx: &mut C,
     e: &ast::Expr,
@@ -284,13 +286,15 @@ fn wants_hint<C: Context>(cx: &C, e: &ast::Expr) -> bool {
     }
 }
 
+type Pair<L> = (Typed<L>, Typed<L>);
+
 /// Types two operands that should have one type; the one that stands on its own first.
 fn operands<C: Context>(
     cx: &mut C,
     a: &ast::Expr,
     b: &ast::Expr,
     hint: Option<&EnumType>,
-) -> Option<(Typed<C::Leaf>, Typed<C::Leaf>)> {
+) -> Option<Pair<C::Leaf>> {
     // An enumeration value beside something that was refused cannot be judged.
     if hint.is_none() && wants_hint(cx, a) && !wants_hint(cx, b) {
         let right = typed(cx, b, None)?;
