@@ -6,7 +6,7 @@ use hyperplan_encode as encode;
 use hyperplan_problem::answer::{Quantifiers, ReasonCode, States};
 use hyperplan_solver::{self as solver, PrintedModelError, Unknown};
 use hyperplan_verify as verify;
-use std::fmt::{self, Display};
+use std::fmt::Display;
 use std::io;
 use std::sync::Arc;
 
@@ -303,9 +303,10 @@ pub enum Because {
 }
 
 /// What the user should know besides an answer or a benchmark.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, thiserror::Error)]
 pub enum Note {
     /// A path ranges over nothing.
+    #[error("system {system} has no path for {path} to range over, which alone decides the objective")]
     NoPaths {
         /// Its system.
         system: String,
@@ -313,13 +314,16 @@ pub enum Note {
         path: String,
     },
     /// States are bit-vectors, since this is too large otherwise.
+    #[error("states are bit-vectors, as there are too many to write one by one: {0}")]
     Symbolic(encode::Error),
     /// A path that the solver chose relies on the outcomes of nondeterministic actions.
+    #[error("{path} relies on outcomes that its actions might not have; `exists {path}` picks them too")]
     PicksOutcomes {
         /// Its variable.
         path: String,
     },
     /// The second solver does not say that something is unsatisfiable.
+    #[error("an unsat was not confirmed by {solver}: {why}")]
     Unconfirmed {
         /// The solver.
         solver: String,
@@ -327,6 +331,7 @@ pub enum Note {
         why: Fallen,
     },
     /// A solver lost a race by failing.
+    #[error("{solver} gave no answer: {error}")]
     Lost {
         /// The solver.
         solver: String,
@@ -334,19 +339,25 @@ pub enum Note {
         error: Arc<Error>,
     },
     /// A benchmark is about a counterexample.
+    #[error("{objective} begins with forall: the query is satisfiable if it has a counterexample")]
     Counterexample {
         /// The objective.
         objective: String,
     },
     /// The status of a benchmark was not found out.
+    #[error("the status is not known: {0}")]
     StatusUnknown(Reason),
     /// Nobody could be asked for the status of a benchmark.
+    #[error("the status is not known: no solver for integers and reals was found")]
     NoArithmeticSolver,
     /// A dialogue ends before the answer is known.
+    #[error("the dialogue ends before the answer is known: {0}")]
     DialogueCut(Reason),
     /// A benchmark's solver does not take its quantifiers.
+    #[error("quantifiers are expanded: {0}")]
     Expanded(Arc<Error>),
     /// A benchmark's solver is served better by another logic than the smallest.
+    #[error("the logic is {logic} instead of {smallest}, which serves {solver} better")]
     Logic {
         /// The logic.
         logic: String,
@@ -355,39 +366,4 @@ pub enum Note {
         /// The solver.
         solver: String,
     },
-}
-
-impl Display for Note {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Note::NoPaths { system, path } => write!(
-                f,
-                "system {system} has no path for {path} to range over, which alone decides the objective"
-            ),
-            Note::Symbolic(error) => {
-                write!(f, "states are bit-vectors, as there are too many to write one by one: {error}")
-            }
-            Note::PicksOutcomes { path } => write!(
-                f,
-                "{path} relies on outcomes that its actions might not have; `exists {path}` picks them too"
-            ),
-            Note::Unconfirmed { solver, why } => write!(f, "an unsat was not confirmed by {solver}: {why}"),
-            Note::Lost { solver, error } => write!(f, "{solver} gave no answer: {error}"),
-            Note::Counterexample { objective } => write!(
-                f,
-                "{objective} begins with forall: the query is satisfiable if it has a counterexample"
-            ),
-            Note::StatusUnknown(reason) => write!(f, "the status is not known: {reason}"),
-            Note::NoArithmeticSolver => {
-                f.write_str("the status is not known: no solver for integers and reals was found")
-            }
-            Note::DialogueCut(reason) => {
-                write!(f, "the dialogue ends before the answer is known: {reason}")
-            }
-            Note::Expanded(error) => write!(f, "quantifiers are expanded: {error}"),
-            Note::Logic { logic, smallest, solver } => {
-                write!(f, "the logic is {logic} instead of {smallest}, which serves {solver} better")
-            }
-        }
-    }
 }
