@@ -1,7 +1,7 @@
 //! A second solver is asked whether what the first one finds unsatisfiable is so.
 
 use super::{Dialogue, Oracle, Stop};
-use crate::evidence::{Claim, Evidence};
+use crate::evidence::{Evidence, full};
 use crate::fact::{Error, Fallen, Note, Worth};
 use hyperplan_smt::{Model, Script, Term, check_model};
 use hyperplan_solver::{Answer, Error as SolverError, open};
@@ -23,7 +23,7 @@ impl Oracle<'_> {
             dialogue.second = Some(second);
             Ok(answer)
         });
-        self.solving += start.elapsed().as_secs_f64();
+        self.account.solving += start.elapsed().as_secs_f64();
         match checked {
             Ok(Answer::Unsat) => Ok(()),
             Ok(Answer::Sat) => Err(self.disagreement(dialogue, script).into()),
@@ -42,8 +42,8 @@ impl Oracle<'_> {
     /// Notes it, unless the same was noted before.
     fn unconfirmed(&mut self, solver: &str, why: Fallen) {
         let note = Note::Unconfirmed { solver: solver.to_owned(), why };
-        if self.notes.iter().all(|known| known.to_string() != note.to_string()) {
-            self.notes.push(note);
+        if self.account.notes.iter().all(|known| known.to_string() != note.to_string()) {
+            self.account.notes.push(note);
         }
     }
 
@@ -65,7 +65,8 @@ impl Oracle<'_> {
             (None, 0) => Worth::Right,
             (None, _) => Worth::Unknown,
         };
-        let evidence = Evidence::new(script, &Claim::Both { unsat: &unsat, sat: &sat, model: &model });
+        let answers = format!("Answer of {}: unsat.\nAnswer of {}: sat.", full(&unsat), full(&sat));
+        let evidence = Evidence::new(script, &unsat, &model, &answers);
         Error::Disagreement { unsat: unsat.name, sat: sat.name, worth, query: Box::new(evidence) }
     }
 }

@@ -5,7 +5,7 @@ mod cross_check;
 mod tests;
 
 use crate::config::Config;
-use crate::evidence::{Claim, Evidence};
+use crate::evidence::{Evidence, full};
 use crate::fact::{Error, Note, Reason, Wrong};
 use hyperplan_smt::{Model, Script, Term, check_model};
 use hyperplan_solver::{self as solver, Answer, Identity, Options, QuerySize, Session, Spec, Unknown, open};
@@ -44,12 +44,9 @@ pub(crate) trait Listener {
 /// Opens sessions and keeps the accounts.
 pub(crate) struct Oracle<'c> {
     config: &'c Config,
-    identity: Option<Identity>,
-    /// The last query whose model could not be evaluated, since quantifiers cannot.
-    unproved: Option<Evidence>,
-    notes: Vec<Note>,
-    solving: f64,
-    largest: QuerySize,
+    account: Account,
+    /// Whether the solver has said who it is.
+    introduced: bool,
     listener: Option<&'c mut dyn Listener>,
 }
 
@@ -63,21 +60,16 @@ pub(crate) struct Account {
     pub(crate) solving: f64,
     /// The largest query.
     pub(crate) largest: QuerySize,
-    /// The last query whose model could not be evaluated.
+    /// The last query whose model could not be evaluated, since quantifiers cannot.
     unproved: Option<Evidence>,
 }
 
 impl<'c> Oracle<'c> {
     pub(crate) fn new(config: &'c Config) -> Self {
-        Oracle {
-            config,
-            identity: None,
-            unproved: None,
-            notes: Vec::new(),
-            solving: 0.0,
-            largest: QuerySize::default(),
-            listener: None,
-        }
+        let solver = Identity { name: config.solver.name().to_owned(), version: String::new() };
+        let largest = QuerySize::default();
+        let account = Account { solver, notes: Vec::new(), solving: 0.0, largest, unproved: None };
+        Oracle { config, account, introduced: false, listener: None }
     }
 
     /// With somebody who hears what is said.
@@ -87,14 +79,7 @@ impl<'c> Oracle<'c> {
 
     /// Ends all that was asked.
     pub(crate) fn into_account(self) -> Account {
-        let nobody = || Identity { name: self.config.solver.name().to_owned(), version: String::new() };
-        Account {
-            solver: self.identity.unwrap_or_else(nobody),
-            notes: self.notes,
-            solving: self.solving,
-            largest: self.largest,
-            unproved: self.unproved,
-        }
+        self.account
     }
 
     /// Starts a dialogue about queries with so many blocks of quantifiers, the leading one as free symbols.
@@ -110,7 +95,7 @@ impl<'c> Oracle<'c> {
         };
         let start = Instant::now();
         let session = open(&self.config.solver, &options)?;
-        self.solving += start.elapsed().as_secs_f64();
+        self.account.solving += start.elapsed().as_secs_f64();
         if let Some(listener) = &mut self.listener {
             listener.opened();
         }
@@ -131,8 +116,8 @@ impl<'c> Oracle<'c> {
         }
         let start = Instant::now();
         let answer = dialogue.session.check(script, &[], &self.config.deadline);
-        self.solving += start.elapsed().as_secs_f64();
-        self.largest = std::mem::take(&mut self.largest).max(dialogue.session.size());
+        self.account.solving += start.elapsed().as_secs_f64();
+        self.account.largest = std::mem::take(&mut self.account.largest).max(dialogue.session.size());
         let answer = answer?;
         if answer != Answer::Sat {
             self.introduce(dialogue);
@@ -164,7 +149,7 @@ impl<'c> Oracle<'c> {
         let symbols = if dialogue.trusted { wanted } else { with_all_symbols(script, wanted) };
         let start = Instant::now();
         let values = dialogue.session.values(script, &symbols);
-        self.solving += start.elapsed().as_secs_f64();
+        self.account.solving += start.elapsed().as_secs_f64();
         match &values {
             Err(solver::Error::Deadline { .. }) => return Err(Stop::Unknown(self.late())),
             Err(solver::Error::Memory { .. }) => return Err(Stop::Unknown(Unknown::Memory.into())),
@@ -184,23 +169,22 @@ impl<'c> Oracle<'c> {
         if result.violated.is_none() && result.unknown == 0 {
             return Ok(());
         }
-        let claim = Claim::Sat { by: &dialogue.session.identity(), model, violated: result.violated };
-        let evidence = Evidence::new(script, &claim);
-        if result.violated.is_some() {
-            let solver = dialogue.session.identity().name;
-            return Err(Error::WrongModel {
-                solver,
-                wrong: Wrong::Violates,
-                query: Some(Box::new(evidence)),
-            });
+        let by = dialogue.session.identity();
+        let answer = format!("Answer of {}: sat, with the model at the end of this file.", full(&by));
+        if let Some(index) = result.violated {
+            let answer = format!("{answer}\nIt violates assertion {}, counted from 1.", index + 1);
+            let query = Some(Box::new(Evidence::new(script, &by, model, &answer)));
+            return Err(Error::WrongModel { solver: by.name, wrong: Wrong::Violates, query });
         }
-        self.unproved = Some(evidence);
+        self.account.unproved = Some(Evidence::new(script, &by, model, &answer));
         Ok(())
     }
 
     /// Takes note of who answers, once the solver has had the occasion to say its version.
     fn introduce(&mut self, dialogue: &Dialogue) {
-        self.identity.get_or_insert_with(|| dialogue.session.identity());
+        if !std::mem::replace(&mut self.introduced, true) {
+            self.account.solver = dialogue.session.identity();
+        }
     }
 
     /// A model that describes no path.
