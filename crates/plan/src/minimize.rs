@@ -130,6 +130,7 @@ struct Solved {
 }
 
 /// Where to look next: at growing distances while the answer is no, then in the middle of what is left.
+#[derive(Default)]
 struct Steps {
     distance: i64,
     /// The least value known to be otherwise.
@@ -137,10 +138,6 @@ struct Steps {
 }
 
 impl Steps {
-    fn new() -> Self {
-        Steps { distance: 0, bound: None }
-    }
-
     /// A value from `low` up, where smaller ones are settled; `None` where the bound is reached.
     fn next(&self, low: i64, high: i64) -> Option<i64> {
         match self.bound {
@@ -184,7 +181,7 @@ impl<E> Minimizer<'_, E> {
 
     /// Raises `low` past values for which the parts that last are hopeless.
     fn refute(&mut self) -> Result<(), MinimizeError<E>> {
-        let mut steps = Steps::new();
+        let mut steps = Steps::default();
         while let Some(value) = steps.next(self.low, self.high) {
             self.follow(value);
             if self.chain.parts.is_empty() {
@@ -218,7 +215,7 @@ impl<E> Minimizer<'_, E> {
 
     fn run(mut self) -> Result<Least, MinimizeError<E>> {
         let mut best: Option<Solved> = None;
-        let mut steps = Steps::new();
+        let mut steps = Steps::default();
         loop {
             if let Some(least) = best.take_if(|best| best.value == self.low) {
                 return Ok(self.conclude(least, None));

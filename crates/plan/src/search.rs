@@ -1,7 +1,7 @@
 //! One solver's search: from an objective to a verified answer.
 
 use crate::cegis::Assignment;
-use crate::config::{Config, Outcome, Seconds, States, Verdict, Verified};
+use crate::config::{Config, Outcome, Seconds, States, Verdict};
 use crate::confirm::confirm;
 use crate::decide::Decision;
 use crate::fact::{Error, Note, Reason, Unsupported};
@@ -60,29 +60,24 @@ fn attempt(
     };
     let total = start.elapsed().as_secs_f64();
     let mut account = oracle.into_account();
-    let end = End::of(&encoder, config, decision.found, &account)?;
     notes.append(&mut account.notes);
-    notes.extend(end.notes);
     let horizons = hyperplan_horizon::horizons(objective);
-    Ok(Outcome {
-        verdict: end.verdict,
-        reason: end.reason,
+    let outcome = Outcome {
+        verdict: Verdict::Unknown,
+        reason: None,
         horizons: horizons.iter_enumerated().map(|(p, h)| h.steps.map(|_| encoder.task.horizon(p))).collect(),
-        witness: end.witness,
-        verified: end.verified,
-        solver: account.solver,
+        witness: None,
+        verified: None,
+        solver: account.solver.clone(),
         quantifiers: decision.quantifiers,
         because: decision.because,
         states: encoder.states,
         iterations: decision.rounds,
-        size: account.largest,
-        seconds: Seconds {
-            encode: (total - account.solving).max(0.0),
-            solve: account.solving,
-            verify: end.verifying,
-        },
+        size: account.largest.clone(),
+        seconds: Seconds { encode: (total - account.solving).max(0.0), solve: account.solving, verify: 0.0 },
         notes,
-    })
+    };
+    concluded(outcome, &encoder, config, decision.found, &account)
 }
 
 /// The embedded solver knows bits only.
@@ -92,67 +87,39 @@ fn needs_arithmetic(encoder: &Encoder<'_>) -> Error {
     Unsupported::Arithmetic { system, states: encoder.states }.into()
 }
 
-/// How a search ends: with a verdict and its witness.
-struct End {
-    verdict: Verdict,
-    reason: Option<Reason>,
-    witness: Option<Strategy>,
-    verified: Option<Verified>,
-    /// Seconds spent on the check of the witness.
-    verifying: f64,
-    notes: Vec<Note>,
-}
-
-impl End {
-    fn undecided(reason: Reason) -> End {
-        End {
-            verdict: Verdict::Unknown,
-            reason: Some(reason),
-            witness: None,
-            verified: None,
-            verifying: 0.0,
-            notes: Vec::new(),
+/// The outcome with the verdict that follows from what was found, once the witness is checked. What nobody could check
+/// is no answer.
+fn concluded(
+    mut outcome: Outcome,
+    encoder: &Encoder<'_>,
+    config: &Config,
+    found: Result<Option<Assignment>, Stop>,
+    account: &Account,
+) -> Result<Outcome, Error> {
+    let undecided = |reason, outcome| Ok(Outcome { reason: Some(reason), ..outcome });
+    let found = match found {
+        Ok(found) => found,
+        Err(Stop::Unknown(reason)) => return undecided(reason, outcome),
+        Err(Stop::Error(Error::Encode(encode::Error::Interrupted))) => {
+            return undecided(config.deadline.reason().into(), outcome);
         }
-    }
-
-    /// The verdict that follows from what was found, once the witness is checked. What nobody could check is no
-    /// answer.
-    fn of(
-        encoder: &Encoder<'_>,
-        config: &Config,
-        found: Result<Option<Assignment>, Stop>,
-        account: &Account,
-    ) -> Result<End, Error> {
-        let found = match found {
-            Ok(found) => found,
-            Err(Stop::Unknown(reason)) => return Ok(End::undecided(reason)),
-            Err(Stop::Error(Error::Encode(encode::Error::Interrupted))) => {
-                return Ok(End::undecided(config.deadline.reason().into()));
-            }
-            Err(Stop::Error(error)) => return Err(error),
-        };
-        let realizable = found.is_some() == is_existential(encoder.objective);
-        let mut end = End {
-            verdict: if realizable { Verdict::Realizable } else { Verdict::Unrealizable },
-            reason: None,
-            notes: found.as_ref().map_or_else(Vec::new, |known| picked_outcomes(encoder, known)),
-            witness: found.map(|known| strategy(encoder, &known)),
-            verified: None,
-            verifying: 0.0,
-        };
-        let Some(strategy) = end.witness.as_ref().filter(|_| config.verify) else { return Ok(end) };
+        Err(Stop::Error(error)) => return Err(error),
+    };
+    let realizable = found.is_some() == is_existential(encoder.objective);
+    outcome.notes.extend(found.iter().flat_map(|known| picked_outcomes(encoder, known)));
+    let witness = found.map(|known| strategy(encoder, &known));
+    if let Some(strategy) = witness.as_ref().filter(|_| config.verify) {
         let start = Instant::now();
         let verified = confirm(encoder, config, strategy, account);
-        end.verifying = start.elapsed().as_secs_f64();
+        outcome.seconds.verify = start.elapsed().as_secs_f64();
         match verified {
-            Ok(verified) => Ok(End { verified: Some(verified), ..end }),
-            Err(Stop::Error(error)) => Err(error),
-            Err(Stop::Unknown(reason)) => {
-                let reason = Reason::Unverified(Box::new(reason));
-                Ok(End { verifying: end.verifying, notes: end.notes, ..End::undecided(reason) })
-            }
+            Ok(verified) => outcome.verified = Some(verified),
+            Err(Stop::Error(error)) => return Err(error),
+            Err(Stop::Unknown(reason)) => return undecided(Reason::Unverified(Box::new(reason)), outcome),
         }
     }
+    let verdict = if realizable { Verdict::Realizable } else { Verdict::Unrealizable };
+    Ok(Outcome { verdict, witness, ..outcome })
 }
 
 fn strategy(encoder: &Encoder<'_>, known: &Assignment) -> Strategy {
