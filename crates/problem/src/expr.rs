@@ -270,23 +270,32 @@ impl<L> Expr<L> {
 
     /// The same expression over other leaves.
     pub fn map<M>(&self, f: &mut impl FnMut(&L) -> M) -> Expr<M> {
-        let mut many = |es: &[Expr<L>]| es.iter().map(|e| e.map(f)).collect::<Vec<_>>();
+        self.substitute(&mut |leaf| Expr::Leaf(f(leaf)))
+    }
+
+    /// The expression with others in the places of its leaves.
+    pub fn substitute<M>(&self, f: &mut impl FnMut(&L) -> Expr<M>) -> Expr<M> {
+        let mut many = |es: &[Expr<L>]| es.iter().map(|e| e.substitute(f)).collect::<Vec<_>>();
         match self {
             Expr::Const(v) => Expr::Const(*v),
             Expr::And(es) => Expr::And(many(es)),
             Expr::Or(es) => Expr::Or(many(es)),
             Expr::Add(es) => Expr::Add(many(es)),
             Expr::Member(es, set) => Expr::Member(many(es), set.clone()),
-            Expr::Leaf(leaf) => Expr::Leaf(f(leaf)),
-            Expr::Not(a) => Expr::Not(Box::new(a.map(f))),
-            Expr::Mul(c, a) => Expr::Mul(*c, Box::new(a.map(f))),
-            Expr::Scale(c, a) => Expr::Scale(*c, Box::new(a.map(f))),
-            Expr::ToReal(a) => Expr::ToReal(Box::new(a.map(f))),
-            Expr::Div(a, c) => Expr::Div(Box::new(a.map(f)), *c),
-            Expr::Mod(a, c) => Expr::Mod(Box::new(a.map(f)), *c),
-            Expr::Iff(a, b) => Expr::Iff(Box::new(a.map(f)), Box::new(b.map(f))),
-            Expr::Compare(op, a, b) => Expr::Compare(*op, Box::new(a.map(f)), Box::new(b.map(f))),
-            Expr::If(a, b, c) => Expr::If(Box::new(a.map(f)), Box::new(b.map(f)), Box::new(c.map(f))),
+            Expr::Leaf(leaf) => f(leaf),
+            Expr::Not(a) => Expr::Not(Box::new(a.substitute(f))),
+            Expr::Mul(c, a) => Expr::Mul(*c, Box::new(a.substitute(f))),
+            Expr::Scale(c, a) => Expr::Scale(*c, Box::new(a.substitute(f))),
+            Expr::ToReal(a) => Expr::ToReal(Box::new(a.substitute(f))),
+            Expr::Div(a, c) => Expr::Div(Box::new(a.substitute(f)), *c),
+            Expr::Mod(a, c) => Expr::Mod(Box::new(a.substitute(f)), *c),
+            Expr::Iff(a, b) => Expr::Iff(Box::new(a.substitute(f)), Box::new(b.substitute(f))),
+            Expr::Compare(op, a, b) => {
+                Expr::Compare(*op, Box::new(a.substitute(f)), Box::new(b.substitute(f)))
+            }
+            Expr::If(a, b, c) => {
+                Expr::If(Box::new(a.substitute(f)), Box::new(b.substitute(f)), Box::new(c.substitute(f)))
+            }
         }
     }
 

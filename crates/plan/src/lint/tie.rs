@@ -139,11 +139,10 @@ fn question(problem: &Problem, objective: &Objective, tie: &Tie, stuck: VarId) -
     };
     parts.push(formula.unary(UnaryOp::Finally, Interval { lo: 0, hi }, here, span));
     formula.push(Node::And(parts), span);
-    let follower =
-        Follower { path: tie.follower, system: &problem.systems[objective.paths[tie.follower].system] };
+    let system = &problem.systems[objective.paths[tie.follower].system];
     for node in &mut formula.nodes {
         if let Node::Atom(e) = node {
-            *e = follower.read(e);
+            *e = e.substitute(&mut |leaf| read(*leaf, tie.follower, system));
         }
     }
     formula
@@ -191,47 +190,25 @@ fn assumptions(objective: &Objective, tie: &Tie) -> Vec<FormulaId> {
     parts
 }
 
-/// Reads atoms about the follower as they are in the system it came from.
-struct Follower<'a> {
-    path: PathId,
-    system: &'a System,
+/// What a leaf says of the follower, as it is in the system it came from.
+fn read(leaf: PathLeaf, follower: PathId, system: &System) -> Expr<PathLeaf> {
+    match leaf {
+        PathLeaf::Enabled(p, action) if p == follower => {
+            enabled(system, action).map(&mut |leaf| PathLeaf::State(p, *leaf))
+        }
+        PathLeaf::SameState(p, q) if p == follower || q == follower => same(p, q, system),
+        leaf => Expr::Leaf(leaf),
+    }
 }
 
-impl Follower<'_> {
-    /// Recursion is bounded by the nesting of expressions.
-    fn read(&self, e: &Expr<PathLeaf>) -> Expr<PathLeaf> {
-        let many = |es: &[Expr<PathLeaf>]| es.iter().map(|e| self.read(e)).collect::<Vec<_>>();
-        match e {
-            Expr::Leaf(PathLeaf::Enabled(p, action)) if *p == self.path => {
-                enabled(self.system, *action).map(&mut |leaf| PathLeaf::State(*p, *leaf))
-            }
-            Expr::Leaf(PathLeaf::SameState(p, q)) if *p == self.path || *q == self.path => self.same(*p, *q),
-            Expr::Not(a) => Expr::Not(Box::new(self.read(a))),
-            Expr::And(es) => Expr::And(many(es)),
-            Expr::Or(es) => Expr::Or(many(es)),
-            Expr::Iff(a, b) => Expr::Iff(Box::new(self.read(a)), Box::new(self.read(b))),
-            Expr::If(c, a, b) => {
-                Expr::If(Box::new(self.read(c)), Box::new(self.read(a)), Box::new(self.read(b)))
-            }
-            Expr::Compare(op, a, b) => Expr::Compare(*op, Box::new(self.read(a)), Box::new(self.read(b))),
-            Expr::Add(es) => Expr::Add(many(es)),
-            Expr::Mul(n, a) => Expr::Mul(*n, Box::new(self.read(a))),
-            Expr::Div(a, n) => Expr::Div(Box::new(self.read(a)), *n),
-            Expr::Mod(a, n) => Expr::Mod(Box::new(self.read(a)), *n),
-            Expr::Member(es, set) => Expr::Member(many(es), set.clone()),
-            other => other.clone(),
+/// The states' equality, variable by variable.
+fn same(p: PathId, q: PathId, system: &System) -> Expr<PathLeaf> {
+    let equal = |(var, declared): (VarId, &hyperplan_problem::Var)| {
+        let of = |path| Box::new(Expr::Leaf(PathLeaf::State(path, Leaf::Var(var))));
+        match declared.ty {
+            Type::Bool => Expr::Iff(of(p), of(q)),
+            _ => Expr::Compare(Comparison::Eq, of(p), of(q)),
         }
-    }
-
-    /// The states' equality, variable by variable.
-    fn same(&self, p: PathId, q: PathId) -> Expr<PathLeaf> {
-        let equal = |(var, declared): (VarId, &hyperplan_problem::Var)| {
-            let of = |path| Box::new(Expr::Leaf(PathLeaf::State(path, Leaf::Var(var))));
-            match declared.ty {
-                Type::Bool => Expr::Iff(of(p), of(q)),
-                _ => Expr::Compare(Comparison::Eq, of(p), of(q)),
-            }
-        };
-        Expr::And(self.system.vars.iter_enumerated().map(equal).collect())
-    }
+    };
+    Expr::And(system.vars.iter_enumerated().map(equal).collect())
 }
