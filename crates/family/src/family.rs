@@ -26,18 +26,6 @@ impl Horizon {
     /// Those that may be asked for.
     pub const ALL: [Horizon; 4] = [Horizon::Below, Horizon::Least, Horizon::Above, Horizon::Double];
 
-    /// Its name.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Horizon::Below => "below",
-            Horizon::Least => "least",
-            Horizon::Above => "above",
-            Horizon::Double => "double",
-            Horizon::Never => "never",
-        }
-    }
-
     fn steps(self, least: u32) -> Option<u32> {
         match self {
             Horizon::Below => least.checked_sub(1).filter(|&steps| steps > 0),
@@ -50,7 +38,7 @@ impl Horizon {
 
 impl fmt::Display for Horizon {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
+        self.serialize(f)
     }
 }
 
@@ -58,7 +46,7 @@ impl FromStr for Horizon {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let found = Horizon::ALL.into_iter().find(|horizon| horizon.name() == text);
+        let found = Horizon::ALL.into_iter().find(|horizon| horizon.to_string() == text);
         found.ok_or_else(|| format!("`{text}` is no horizon; expected below, least, above or double"))
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::record::{Dropped, Entry, Head, Record};
 use serde::Serialize;
+use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// What a family consists of.
@@ -16,25 +17,10 @@ pub struct Manifest {
     pub dropped: Vec<Dropped>,
 }
 
-/// A line of the table.
-#[derive(Serialize)]
-struct Row<'a> {
-    file: &'a str,
-    sha256: &'a str,
-    bytes: u64,
-    logic: &'a str,
-    status: &'a str,
-    track: &'a str,
-    objective: &'a str,
-    size: u32,
-    density: u32,
-    seed: u64,
-    horizon: &'a str,
-    steps: u32,
-    states: &'a str,
-    quantifiers: &'a str,
-    problem: &'a str,
-}
+/// The columns of the table: the names of an entry's fields, and the track.
+const COLUMNS: &str = "\
+    file,sha256,bytes,logic,status,track,objective,size,density,seed,horizon,steps,\
+    states,quantifiers,problem";
 
 impl Manifest {
     /// The manifest of a log: of several records of one instance the last counts. The order is that of the names, so
@@ -91,31 +77,18 @@ impl Manifest {
     /// None: it is written to memory.
     pub fn csv(&self) -> Result<Vec<u8>, csv::Error> {
         let mut table = csv::Writer::from_writer(Vec::new());
+        if !self.benchmarks.is_empty() {
+            table.write_record(COLUMNS.split(','))?;
+        }
         for entry in &self.benchmarks {
-            table.serialize(self.row(entry))?;
+            let mut fields = serde_json::to_value(entry).map_err(std::io::Error::from)?;
+            fields["track"] = self.head.track.clone().into();
+            table.write_record(COLUMNS.split(',').map(|column| match &fields[column] {
+                Value::String(text) => text.clone(),
+                number => number.to_string(),
+            }))?;
         }
         table.into_inner().map_err(|e| e.into_error().into())
-    }
-
-    fn row<'a>(&'a self, entry: &'a Entry) -> Row<'a> {
-        let Entry { file, sha256, bytes, logic, status, problem, about, .. } = entry;
-        Row {
-            file,
-            sha256,
-            bytes: *bytes,
-            logic,
-            status,
-            track: &self.head.track,
-            objective: about.case.objective.name(),
-            size: about.case.map.size,
-            density: about.case.map.density,
-            seed: about.case.map.seed,
-            horizon: about.horizon.name(),
-            steps: about.steps,
-            states: &about.states,
-            quantifiers: &about.quantifiers,
-            problem,
-        }
     }
 }
 
