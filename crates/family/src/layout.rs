@@ -1,32 +1,5 @@
 //! Where the files of a submission are.
 
-use std::fmt;
-
-/// The folder of a track. The SMT-LIB library has the first two; the others hold what a competition would derive from
-/// the library's files.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Folder {
-    /// Files with one question.
-    NonIncremental,
-    /// Files with several.
-    Incremental,
-    /// Files that ask for a model.
-    ModelValidation,
-    /// Files that ask for an unsatisfiable core.
-    UnsatCore,
-}
-
-impl fmt::Display for Folder {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Folder::NonIncremental => "non-incremental",
-            Folder::Incremental => "incremental",
-            Folder::ModelValidation => "model-validation",
-            Folder::UnsatCore => "unsat-core",
-        })
-    }
-}
-
 /// The names of a submission.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
@@ -53,9 +26,9 @@ impl Layout {
         Ok(Layout { set: format!("{}-{family}-{submitter}", date.replace('-', "")) })
     }
 
-    /// The path of a benchmark, with `/`, as submissions have it: folder, logic, set, objective, size and name.
+    /// The path of a benchmark, with `/`, as submissions have it: folder of the track, logic, set, objective, size and name.
     #[must_use]
-    pub fn benchmark(&self, folder: Folder, logic: &str, case: &crate::Case, instance: &str) -> String {
+    pub fn benchmark(&self, folder: &str, logic: &str, case: &crate::Case, instance: &str) -> String {
         let (objective, size) = (case.objective, case.map.size);
         format!("{folder}/{logic}/{}/{objective}/{size}x{size}/{instance}.smt2", self.set)
     }
@@ -77,7 +50,7 @@ mod tests {
         let case = Case { objective: Objective::Ar, map: Parameters { size: 8, density: 10, seed: 3 } };
         let layout = Layout::new("2026-02-28", "random-maps", "robot").expect("good names");
         assert_eq!(
-            layout.benchmark(Folder::NonIncremental, "QF_UF", &case, "one"),
+            layout.benchmark("non-incremental", "QF_UF", &case, "one"),
             "non-incremental/QF_UF/20260228-random-maps-robot/ar/8x8/one.smt2"
         );
     }

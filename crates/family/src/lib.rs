@@ -15,7 +15,7 @@ mod random;
 mod record;
 
 pub use family::{Case, Family, Horizon};
-pub use layout::{Folder, Layout, NameError};
+pub use layout::{Layout, NameError};
 pub use manifest::Manifest;
 pub use map::{Cell, MAX_DENSITY, Map, MapError, Parameters, SIZES};
 pub use objective::Objective;

@@ -9,8 +9,9 @@ use crate::failure::{Exit, Failure, Result};
 use crate::output::Output;
 use crate::store::Store;
 use case::One;
+use clap::ValueEnum as _;
 use hyperplan_family::{Case, Family, Head, Layout, Record};
-use hyperplan_plan::{EmitConfig, Limits, Quantifiers, States, Track};
+use hyperplan_plan::{EmitConfig, Limits, Quantifiers, States};
 use hyperplan_solver::Deadline;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::Path;
@@ -28,7 +29,7 @@ pub(crate) fn run(args: &args::Emit, out: &mut Output) -> Result {
         date: work.date.clone(),
         family: args.family.name.clone(),
         submitter: args.family.submitter.clone(),
-        track: work.track().to_owned(),
+        track: args.track.to_possible_value().map_or_else(String::new, |track| track.get_name().to_owned()),
     };
     let mut store = Store::open(folder, head)?;
     let result = work.run(&mut store, args.family.jobs.map(Into::into), out);
@@ -102,16 +103,6 @@ impl<'a> Work<'a> {
         let common = EmitConfig { limits: Limits { prune: false, ..common.limits }, ..common };
         let deadline = common.deadline.clone();
         Ok(Work { folder, family, layout, date, states, quantifiers, common, limit, deadline })
-    }
-
-    /// What the track is called.
-    fn track(&self) -> &'static str {
-        match self.common.track {
-            Track::Single => "single",
-            Track::Incremental => "incremental",
-            Track::Model => "model",
-            Track::UnsatCore => "unsat-core",
-        }
     }
 
     /// Works through all cases, several at a time; what comes of them is noted here, in the order in which it comes.

@@ -7,7 +7,7 @@ use crate::explain::Explain;
 use crate::failure::{self, Failure, Result};
 use crate::store::write_whole;
 use hyperplan_family::{
-    About, Case, Dropped, Entry, Folder, Horizon, Layout, Map, Objective, Record, body_of, sha256,
+    About, Case, Dropped, Entry, Horizon, Layout, Map, Objective, Record, body_of, sha256,
 };
 use hyperplan_plan::{
     self as plan, Config, EmitConfig, Fault, MinimizeError, Quantifiers, States, Status, Track, Verdict,
@@ -185,12 +185,14 @@ impl One<'_> {
         }
     }
 
-    fn folder(&self) -> Folder {
+    /// The folder of the track. The SMT-LIB library has the first two; the others hold what a competition would derive
+    /// from the library's files.
+    fn folder(&self) -> &'static str {
         match self.work.common.track {
-            Track::Single => Folder::NonIncremental,
-            Track::Incremental => Folder::Incremental,
-            Track::Model => Folder::ModelValidation,
-            Track::UnsatCore => Folder::UnsatCore,
+            Track::Single => "non-incremental",
+            Track::Incremental => "incremental",
+            Track::Model => "model-validation",
+            Track::UnsatCore => "unsat-core",
         }
     }
 
