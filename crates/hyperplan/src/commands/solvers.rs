@@ -5,7 +5,7 @@ use crate::configuration;
 use crate::failure::{Exit, Result};
 use crate::output::Output;
 use crate::report::json;
-use hyperplan_solver::Found;
+use hyperplan_solver::{Found, Install};
 use serde::Serialize;
 
 pub(crate) fn run(args: &args::Solvers, out: &mut Output) -> Result {
@@ -69,23 +69,14 @@ struct Report<'a> {
     tried: &'a [String],
     /// How to install it, in words.
     hint: &'a str,
-    install: Install<'a>,
+    /// Commands for each kind of system, and an address that says more.
+    install: &'a Install,
     /// The configuration file that describes it.
     origin: Option<String>,
 }
 
-/// Commands for each kind of system, and an address that says more.
-#[derive(Serialize)]
-struct Install<'a> {
-    debian: Option<&'a str>,
-    macos: Option<&'a str>,
-    pypi: Option<&'a str>,
-    see: Option<&'a str>,
-}
-
 impl<'a> Report<'a> {
     fn new(solver: &'a Found) -> Self {
-        let install = &solver.install;
         Report {
             name: &solver.name,
             embedded: solver.is_embedded,
@@ -95,12 +86,7 @@ impl<'a> Report<'a> {
             faults: &solver.faults,
             tried: &solver.tried,
             hint: &solver.hint,
-            install: Install {
-                debian: install.debian.as_deref(),
-                macos: install.macos.as_deref(),
-                pypi: install.pypi.as_deref(),
-                see: install.see.as_deref(),
-            },
+            install: &solver.install,
             origin: solver.origin.as_ref().map(|p| p.display().to_string()),
         }
     }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::session::Quantifiers;
 
@@ -81,7 +81,7 @@ impl fmt::Display for Theory {
 }
 
 /// How to install a solver: a command for each kind of system.
-#[derive(Clone, PartialEq, Eq, Debug, Default, Deserialize)]
+#[derive(Clone, PartialEq, Eq, Debug, Default, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Install {
     /// On Debian and its relatives.
