@@ -127,22 +127,16 @@ fn do_all(
         }
         Ok(())
     };
-    run_all(missing, setting, &cancelled, tell).map_err(|Stop(message)| Failure::input(message))
+    run_all(missing, setting, &cancelled, tell).map_err(Failure::input)
 }
 
 /// Why runs cannot go on.
-struct Stop(String);
-
-impl From<io::Error> for Stop {
-    fn from(error: io::Error) -> Stop {
-        Stop(format!("cannot go on: {error}"))
-    }
-}
-
-impl From<LogError> for Stop {
-    fn from(error: LogError) -> Stop {
-        Stop(error.to_string())
-    }
+#[derive(Debug, thiserror::Error)]
+enum Stop {
+    #[error("cannot go on: {0}")]
+    Io(#[from] io::Error),
+    #[error(transparent)]
+    Log(#[from] LogError),
 }
 
 /// Those of the records that are about one of the runs, the last about each.
