@@ -9,32 +9,32 @@ use crate::{Answer, Record, Status};
 
 /// What takes part in a comparison: a solver together with everything that was chosen for it.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Contestant {
+pub struct Contestant<'a> {
     /// The solver, as it was asked for.
-    pub solver: String,
-    /// What it says its version is.
-    pub version: Option<String>,
+    pub solver: &'a str,
     /// How quantifiers were decided; `None` for queries.
-    pub quantifiers: Option<String>,
+    pub quantifiers: Option<&'a str>,
     /// How states were written; `None` for queries.
-    pub states: Option<String>,
+    pub states: Option<&'a str>,
+    /// What the solver says its version is.
+    pub version: Option<&'a str>,
     /// Further options.
-    pub options: String,
+    pub options: &'a str,
     /// The solver with no more of the rest than tells it from the other contestants.
     pub label: String,
 }
 
 /// What was asked: a file with its constants. Files that changed in between are different instances.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Instance {
+pub struct Instance<'a> {
     /// Its folder.
-    pub family: String,
+    pub family: &'a str,
     /// The file, and for a problem file the objective.
-    pub name: String,
+    pub name: &'a str,
     /// The constants that were set.
-    pub set: Vec<String>,
+    pub set: &'a [String],
     /// Of the file's bytes.
-    pub sha256: String,
+    pub sha256: &'a str,
     /// The name with its constants, and the beginning of the hash where the name alone is ambiguous.
     pub label: String,
 }
@@ -54,9 +54,9 @@ pub struct Cell<'a> {
 #[derive(Clone, Debug)]
 pub struct Contest<'a> {
     /// The contestants, in order.
-    pub contestants: Vec<Contestant>,
+    pub contestants: Vec<Contestant<'a>>,
     /// The instances, by family and name.
-    pub instances: Vec<Instance>,
+    pub instances: Vec<Instance<'a>>,
     /// By instance and contestant; `None` where nothing was run.
     pub cells: Vec<Vec<Option<Cell<'a>>>>,
     /// Of each instance, the answer that is known to be right.
@@ -65,32 +65,26 @@ pub struct Contest<'a> {
     pub disputed: Vec<bool>,
 }
 
-/// What tells contestants apart: solver, quantifiers, states, version, options.
-type Identity<'a> = (&'a str, Option<&'a str>, Option<&'a str>, Option<&'a str>, &'a str);
-
 impl<'a> Contest<'a> {
     /// Sorts the records.
     pub fn new(records: &'a [Record]) -> Self {
         let versions = Versions::new(records);
-        let identity = |record: &'a Record| -> Identity<'a> {
-            let version = versions.of(record);
-            (
-                &record.solver,
-                record.quantifiers.as_deref(),
-                record.states.as_deref(),
-                version,
-                &record.options,
-            )
-        };
         let mut table: BTreeMap<_, BTreeMap<_, Vec<&Record>>> = BTreeMap::new();
         for record in records {
-            table.entry(place(record)).or_default().entry(identity(record)).or_default().push(record);
+            let contestant = Contestant {
+                solver: &record.solver,
+                quantifiers: record.quantifiers.as_deref(),
+                states: record.states.as_deref(),
+                version: versions.of(record),
+                options: &record.options,
+                label: String::new(),
+            };
+            table.entry(instance(record)).or_default().entry(contestant).or_default().push(record);
         }
-        let identities: BTreeSet<_> = table.values().flat_map(BTreeMap::keys).copied().collect();
-        let identities: Vec<_> = identities.into_iter().collect();
+        let contestants: BTreeSet<_> = table.values().flat_map(BTreeMap::keys).cloned().collect();
         let mut contest = Self {
-            contestants: contestants(&identities),
-            instances: instances(table.keys().copied()),
+            contestants: contestants.into_iter().collect(),
+            instances: table.keys().cloned().collect(),
             cells: Vec::new(),
             truth: Vec::new(),
             disputed: Vec::new(),
@@ -100,13 +94,11 @@ impl<'a> Contest<'a> {
             let truth = truth(&runs);
             contest.truth.push(truth);
             contest.disputed.push(truth.is_none() && disputed(&runs));
-            contest.cells.push(
-                identities
-                    .iter()
-                    .map(|who| row.remove(who).and_then(|runs| Cell::new(runs, truth)))
-                    .collect(),
-            );
+            let cell = |who| row.remove(who).and_then(|runs| Cell::new(runs, truth));
+            contest.cells.push(contest.contestants.iter().map(cell).collect());
         }
+        label_contestants(&mut contest.contestants);
+        label_instances(&mut contest.instances);
         contest
     }
 
@@ -136,16 +128,19 @@ impl<'a> Contest<'a> {
             .filter_map(move |(i, row)| row[contestant].as_ref().map(|cell| (i, cell)))
     }
 
+    /// All runs, by instance.
+    pub(crate) fn runs(&self) -> impl Iterator<Item = &'a Record> {
+        self.cells.iter().flatten().flatten().flat_map(|cell| cell.runs.iter().copied())
+    }
+
     /// The largest wall time that any run was allowed, or took where nothing was said; what a plot has to show.
     pub fn longest(&self) -> f64 {
-        let runs = self.cells.iter().flatten().flatten().flat_map(|cell| &cell.runs);
-        runs.map(|run| allowed(run).unwrap_or(run.wall_s)).fold(0.0, f64::max)
+        self.runs().map(|run| allowed(run).unwrap_or(run.wall_s)).fold(0.0, f64::max)
     }
 
     /// The wall time that every run was allowed, if it was the same for all.
     pub fn limit(&self) -> Option<f64> {
-        let mut limits =
-            self.cells.iter().flatten().flatten().flat_map(|cell| &cell.runs).map(|run| allowed(run));
+        let mut limits = self.runs().map(allowed);
         let first = limits.next()??;
         limits.all(|limit| limit == Some(first)).then_some(first)
     }
@@ -289,72 +284,53 @@ fn disputed(runs: &[&Record]) -> bool {
     said(Answer::Sat) && said(Answer::Unsat)
 }
 
-fn place(record: &Record) -> (&str, &str, &[String], &str) {
-    (&record.family, &record.instance, &record.set, &record.sha256)
+fn instance(record: &Record) -> Instance<'_> {
+    let set = &record.set;
+    let words: Vec<&str> = [&record.instance].into_iter().chain(set).map(String::as_str).collect();
+    Instance {
+        family: &record.family,
+        name: &record.instance,
+        set,
+        sha256: &record.sha256,
+        label: one_line(&words.join(" ")).into_owned(),
+    }
 }
 
-fn instances<'a>(places: impl Iterator<Item = (&'a str, &'a str, &'a [String], &'a str)>) -> Vec<Instance> {
-    let mut found: Vec<Instance> = places
-        .map(|(family, name, set, sha256)| Instance {
-            family: family.to_owned(),
-            name: name.to_owned(),
-            set: set.to_vec(),
-            sha256: sha256.to_owned(),
-            label: one_line(
-                &std::iter::once(name).chain(set.iter().map(String::as_str)).collect::<Vec<_>>().join(" "),
-            )
-            .into_owned(),
-        })
-        .collect();
+/// Tells instances of one name apart.
+fn label_instances(instances: &mut [Instance<'_>]) {
     let mut labels: BTreeMap<String, usize> = BTreeMap::new();
-    for instance in &found {
+    for instance in &*instances {
         *labels.entry(instance.label.clone()).or_default() += 1;
     }
-    for instance in found.iter_mut().filter(|instance| labels[&instance.label] > 1) {
+    for instance in instances.iter_mut().filter(|instance| labels[&instance.label] > 1) {
         let hash: String = instance.sha256.chars().take(8).collect();
         instance.label = format!("{} ({hash})", instance.label);
     }
-    found
 }
 
-fn contestants(identities: &[Identity<'_>]) -> Vec<Contestant> {
-    let owned = |part: Option<&str>| part.map(str::to_owned);
-    let mut solvers: BTreeMap<&str, BTreeSet<Option<&str>>> = BTreeMap::new();
-    for (solver, _, _, version, _) in identities {
-        solvers.entry(solver).or_default().insert(*version);
+fn label_contestants(contestants: &mut [Contestant<'_>]) {
+    let mut versions: BTreeMap<&str, BTreeSet<Option<&str>>> = BTreeMap::new();
+    for who in &*contestants {
+        versions.entry(who.solver).or_default().insert(who.version);
     }
     // A choice is worth saying if it was not the same for everyone who had it: solvers that got a query by themselves had none.
-    let problems: Vec<&Identity<'_>> = identities.iter().filter(|who| who.1.is_some()).collect();
-    let quantifiers_vary = problems.iter().map(|who| who.1).collect::<BTreeSet<_>>().len() > 1;
-    let states_vary = problems.iter().map(|who| who.2).collect::<BTreeSet<_>>().len() > 1;
-    let options_vary = problems.iter().map(|who| who.4).collect::<BTreeSet<_>>().len() > 1;
-    let both = !problems.is_empty() && problems.len() < identities.len();
-    let label = |who: &Identity<'_>| {
-        let (solver, quantifiers, states, version, options) = *who;
-        let with_hyperplan = both && quantifiers.is_some();
-        let mut label = if with_hyperplan { format!("hyperplan {solver}") } else { solver.to_owned() };
-        if solvers[solver].len() > 1 {
-            label = format!("{label} {}", version.unwrap_or("(version unknown)"));
-        }
+    let problems: Vec<&Contestant<'_>> = contestants.iter().filter(|who| who.quantifiers.is_some()).collect();
+    let quantifiers_vary = problems.iter().any(|who| who.quantifiers != problems[0].quantifiers);
+    let states_vary = problems.iter().any(|who| who.states != problems[0].states);
+    let options_vary = problems.iter().any(|who| who.options != problems[0].options);
+    let both = !problems.is_empty() && problems.len() < contestants.len();
+    for who in contestants {
+        let hyperplan = (both && who.quantifiers.is_some()).then_some("hyperplan");
+        let version = who.version.unwrap_or("(version unknown)");
         let parts = [
-            quantifiers.filter(|_| quantifiers_vary),
-            states.filter(|_| states_vary),
-            Some(options).filter(|options| options_vary && !options.is_empty()),
+            hyperplan,
+            Some(who.solver),
+            Some(version).filter(|_| versions[who.solver].len() > 1),
+            who.quantifiers.filter(|_| quantifiers_vary),
+            who.states.filter(|_| states_vary),
+            Some(who.options).filter(|options| options_vary && !options.is_empty()),
         ];
-        for part in parts.into_iter().flatten() {
-            label = format!("{label} {part}");
-        }
-        one_line(&label).into_owned()
-    };
-    identities
-        .iter()
-        .map(|who| Contestant {
-            solver: who.0.to_owned(),
-            version: owned(who.3),
-            quantifiers: owned(who.1),
-            states: owned(who.2),
-            options: who.4.to_owned(),
-            label: label(who),
-        })
-        .collect()
+        let parts: Vec<&str> = parts.into_iter().flatten().collect();
+        who.label = one_line(&parts.join(" ")).into_owned();
+    }
 }

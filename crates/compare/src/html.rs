@@ -1,7 +1,6 @@
 //! The report as a page: one file that needs no network. The template escapes all text of records; links are relative,
 //! whatever a record says.
 
-use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::io;
 use std::path::Path;
@@ -9,22 +8,23 @@ use std::path::Path;
 use askama::Template;
 use serde::Serialize;
 
-use crate::contest::{Cell, Contest, Instance, is_certified};
-use crate::judge::{Claim, Fault, Finding, Judgement};
-use crate::links::{Link, Links};
-use crate::plot::{self, Kind, Scatter};
+use crate::contest::{Cell, Contest, Contestant, Instance, is_certified};
+use crate::judge::{Fault, Finding, Judgement};
+use crate::links::Links;
+use crate::plot::{self, KINDS, Kind, Scatter};
 use crate::score::Scores;
 use crate::table::{self, Sheet, seconds};
 use crate::{Answer, Record};
 
 #[derive(Template)]
 #[template(path = "report.html")]
-struct Page {
+struct Page<'a> {
     style: &'static str,
     script: &'static str,
     facts: String,
     verdict: String,
-    findings: Vec<FindingView>,
+    findings: &'a [Finding],
+    links: Links<'a>,
     scores: Grid,
     notes: Vec<String>,
     cactus: String,
@@ -35,20 +35,6 @@ struct Page {
     instances: Grid,
     contestants: Grid,
     data: String,
-}
-
-struct FindingView {
-    instance: String,
-    kind: String,
-    fault: String,
-    truth: Option<Answer>,
-    claims: Vec<ClaimView>,
-}
-
-struct ClaimView {
-    text: String,
-    said: Vec<String>,
-    queries: Vec<Link>,
 }
 
 /// A table of the page.
@@ -87,15 +73,9 @@ struct GridCell {
 #[derive(Serialize)]
 struct Data<'a> {
     origin: (f64, f64),
-    kinds: Vec<KindData>,
+    kinds: [Kind; 3],
     instances: Vec<&'a str>,
     contestants: Vec<ContestantData<'a>>,
-}
-
-#[derive(Serialize)]
-struct KindData {
-    outline: &'static str,
-    class: &'static str,
 }
 
 #[derive(Serialize)]
@@ -125,7 +105,7 @@ pub(crate) fn page(
         script: include_str!("../templates/report.js"),
         facts: facts(contest),
         verdict: verdict(judgement),
-        findings: judgement.findings.iter().map(|finding| finding_view(finding, &links)).collect(),
+        findings: &judgement.findings,
         scores: scores_grid(all, "scores", "Scores"),
         notes: table::notes(contest, scores),
         cactus: if order.is_empty() { String::new() } else { plot::cactus(contest, scores) },
@@ -135,6 +115,7 @@ pub(crate) fn page(
         families: (0..).zip(families).map(|(i, sheet)| family(i, sheet)).collect(),
         instances: instances(contest, &order, &links),
         contestants: contestants(contest),
+        links,
         data: data(contest)?,
     };
     page.render().map_err(io::Error::other)
@@ -149,18 +130,17 @@ fn count(number: usize, what: &str) -> String {
 }
 
 fn facts(contest: &Contest<'_>) -> String {
-    let runs = || contest.cells.iter().flatten().flatten().flat_map(|cell| &cell.runs);
-    let hosts: BTreeSet<&str> = runs().map(|run| run.host.as_str()).collect();
+    let hosts: BTreeSet<&str> = contest.runs().map(|run| run.host.as_str()).collect();
     let mut facts = format!(
         "{} of {} on {}",
-        count(runs().count(), "run"),
+        count(contest.runs().count(), "run"),
         count(contest.contestants.len(), "solver configuration"),
         count(contest.instances.len(), "instance")
     );
     if let Some(limit) = contest.limit() {
         facts.push_str(&format!(", limit {limit} s"));
     }
-    let memory: BTreeSet<u64> = runs().filter_map(|run| run.limit.memory_mib).collect();
+    let memory: BTreeSet<u64> = contest.runs().filter_map(|run| run.limit.memory_mib).collect();
     if let (1, Some(memory)) = (memory.len(), memory.first()) {
         facts.push_str(&format!(" and {memory} MiB"));
     }
@@ -181,21 +161,6 @@ fn verdict(judgement: &Judgement) -> String {
     };
     let are = if findings == 1 { "thing is" } else { "things are" };
     format!("{findings} {are} wrong; {whose}.")
-}
-
-fn finding_view(finding: &Finding, links: &Links<'_>) -> FindingView {
-    let claim = |claim: &Claim| ClaimView {
-        text: claim.to_string(),
-        said: claim.said().map(Cow::into_owned).collect(),
-        queries: claim.queries.as_deref().map_or_else(Vec::new, |queries| links.queries(queries)),
-    };
-    FindingView {
-        instance: finding.instance.clone(),
-        kind: finding.kind.to_string(),
-        fault: finding.blame(),
-        truth: finding.truth,
-        claims: finding.claims.iter().map(claim).collect(),
-    }
 }
 
 fn scores_grid(sheet: &Sheet, id: &str, caption: &str) -> Grid {
@@ -224,7 +189,7 @@ fn scores_grid(sheet: &Sheet, id: &str, caption: &str) -> Grid {
 /// The instances with what each contestant made of them, best contestant first.
 fn instances(contest: &Contest<'_>, order: &[usize], links: &Links<'_>) -> Grid {
     let names = order.iter().map(|&c| contest.contestants[c].label.clone());
-    let row = |(i, instance): (usize, &Instance)| {
+    let row = |(i, instance): (usize, &Instance<'_>)| {
         let disputed = contest.disputed[i];
         let mark = if disputed { "✗ " } else { "" };
         let answer =
@@ -232,7 +197,7 @@ fn instances(contest: &Contest<'_>, order: &[usize], links: &Links<'_>) -> Grid 
         let name = GridCell {
             text: instance.label.clone(),
             title: Some(format!("sha256 {}", instance.sha256)),
-            href: links.instance(&instance.name),
+            href: links.instance(instance.name),
             ..GridCell::default()
         };
         let only = contest.only(i).filter(|_| order.len() > 1);
@@ -311,16 +276,11 @@ fn details(cell: &Cell<'_>) -> String {
 fn contestants(contest: &Contest<'_>) -> Grid {
     let head = ["name", "solver", "version", "quantifiers", "states", "options"];
     let rows = contest.contestants.iter().map(|contestant| {
-        let none = String::new;
-        let texts = [
-            contestant.label.clone(),
-            contestant.solver.clone(),
-            contestant.version.clone().unwrap_or_else(none),
-            contestant.quantifiers.clone().unwrap_or_else(none),
-            contestant.states.clone().unwrap_or_else(none),
-            contestant.options.clone(),
-        ];
-        GridRow { cells: texts.map(|text| GridCell { text, ..GridCell::default() }).into(), last: false }
+        let &Contestant { solver, quantifiers, states, version, options, ref label } = contestant;
+        let [version, quantifiers, states] = [version, quantifiers, states].map(Option::unwrap_or_default);
+        let texts = [label.as_str(), solver, version, quantifiers, states, options];
+        let cell = |text: &str| GridCell { text: text.to_owned(), ..GridCell::default() };
+        GridRow { cells: texts.map(cell).into(), last: false }
     });
     Grid {
         id: "contestants".to_owned(),
@@ -348,7 +308,7 @@ fn data(contest: &Contest<'_>) -> io::Result<String> {
     });
     let data = Data {
         origin: Scatter::origin(),
-        kinds: Kind::ALL.map(|kind| KindData { outline: kind.outline(), class: kind.style().1 }).into(),
+        kinds: KINDS,
         instances: contest.instances.iter().map(|instance| instance.label.as_str()).collect(),
         contestants: contestants.collect(),
     };

@@ -15,33 +15,42 @@ use crate::text::one_line;
 use crate::{Answer, Record};
 
 /// What is wrong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, thiserror::Error)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {
     /// A checked witness contradicts the known status.
+    #[error("the known status is wrong")]
     WrongStatus,
     /// An answer contradicts the known status.
+    #[error("against the known status")]
     Expected,
     /// Different solvers gave different answers, each always the same.
+    #[error("solvers disagree")]
     Disagreement,
     /// One solver gave different answers, to different encodings or in different runs, whatever others said.
+    #[error("a solver contradicts itself")]
     SelfContradiction,
     /// A model does not satisfy its query.
+    #[error("a model fails")]
     WrongModel,
     /// The checker refutes the strategy that was found.
+    #[error("a strategy is refuted")]
     RefutedStrategy,
 }
 
 /// Whose fault it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, thiserror::Error)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fault {
     /// A solver's: it was asked the same as one that says otherwise, or got a query and no more, or its model is wrong.
+    #[error("a solver's fault")]
     Solver,
     /// That of who wrote the known status, or a solver's after all, unless a witness was checked: several solvers answered,
     /// and none says what it says.
+    #[error("but all agree: the status may be wrong")]
     Status,
     /// Ours, for all that is known: nothing clears the encoding.
+    #[error("a bug of hyperplan's until shown otherwise")]
     Ours,
 }
 
@@ -270,29 +279,6 @@ fn claims(runs: &[&Run<'_>]) -> Vec<Claim> {
         claim.queries = claim.queries.take().or_else(|| record.queries.clone());
     }
     found.into_values().collect()
-}
-
-impl fmt::Display for Kind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Kind::WrongStatus => "the known status is wrong",
-            Kind::Expected => "against the known status",
-            Kind::Disagreement => "solvers disagree",
-            Kind::SelfContradiction => "a solver contradicts itself",
-            Kind::WrongModel => "a model fails",
-            Kind::RefutedStrategy => "a strategy is refuted",
-        })
-    }
-}
-
-impl fmt::Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Fault::Solver => "a solver's fault",
-            Fault::Status => "but all agree: the status may be wrong",
-            Fault::Ours => "a bug of hyperplan's until shown otherwise",
-        })
-    }
 }
 
 /// Who said what; what was said besides stands in [`Claim::details`].

@@ -11,7 +11,7 @@ use crate::supervise::{Exceeded, Measured};
 const MESSAGE: usize = 500;
 
 /// What a run came to.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Reading {
     pub(crate) status: Status,
     pub(crate) expected: Option<Answer>,
@@ -32,27 +32,9 @@ pub(crate) struct Reading {
 
 impl Reading {
     pub(crate) fn new(status: Status, message: Option<String>) -> Reading {
-        Reading {
-            status,
-            expected: None,
-            verified: None,
-            version: None,
-            states: None,
-            quantifiers: None,
-            horizon: None,
-            variables: None,
-            assertions: None,
-            bytes: None,
-            logic: None,
-            solver_s: None,
-            rounds: None,
-            reason_code: None,
-            message,
-        }
+        Reading { status, message, ..Reading::default() }
     }
-}
 
-impl Reading {
     /// With the size of a query.
     pub(crate) fn sized(self, query: &Query) -> Reading {
         Reading {

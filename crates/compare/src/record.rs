@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::text::one_line;
 
 /// What a run ended with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
     /// Satisfiable; of an objective: realizable.
@@ -23,6 +23,7 @@ pub enum Status {
     /// Out of memory.
     Memout,
     /// The solver crashed, was missing, or said nothing that could be understood.
+    #[default]
     Error,
     /// The request made no sense for this solver or encoding; not counted against the solver.
     Unsupported,
@@ -40,24 +41,13 @@ pub enum Answer {
 
 impl fmt::Display for Answer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Answer::Sat => "sat",
-            Answer::Unsat => "unsat",
-        })
+        self.serialize(f)
     }
 }
 
 impl fmt::Display for Status {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Status::Sat => "sat",
-            Status::Unsat => "unsat",
-            Status::Unknown => "unknown",
-            Status::Timeout => "timeout",
-            Status::Memout => "memout",
-            Status::Error => "error",
-            Status::Unsupported => "unsupported",
-        })
+        self.serialize(f)
     }
 }
 

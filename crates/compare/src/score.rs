@@ -219,7 +219,7 @@ fn wins(contest: &Contest<'_>, counted: &[usize], scores: &mut [Score]) {
         let winners: Vec<usize> = (0..row.len()).filter(solved).collect();
         let wall = |c: usize| row[c].as_ref().map_or(f64::INFINITY, |cell| cell.median.wall_s);
         let fastest = winners.iter().map(|&c| wall(c)).fold(f64::INFINITY, f64::min);
-        let solver = |c: usize| &contest.contestants[c].solver;
+        let solver = |c: usize| contest.contestants[c].solver;
         let alone = winners.iter().all(|&c| solver(c) == solver(winners[0]));
         for &c in &winners {
             scores[c].unique += usize::from(winners.len() == 1);

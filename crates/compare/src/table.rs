@@ -1,14 +1,13 @@
 //! Tables: of scores and instances, for Markdown and whatever else; of runs, as CSV.
 
-use std::borrow::Cow;
 use std::io;
 
-use serde::Serialize;
+use serde_json::Value;
 
+use crate::Record;
 use crate::contest::{Cell, Contest};
 use crate::score::{Score, Scores, scores};
 use crate::text::one_line;
-use crate::{Answer, Record, Status};
 
 /// Names of columns and the rows below.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -119,7 +118,7 @@ pub fn sheets(contest: &Contest<'_>) -> Vec<Sheet> {
 
 /// The families, in order.
 pub(crate) fn families<'c>(contest: &'c Contest<'_>) -> Vec<&'c str> {
-    let mut families: Vec<&str> = contest.instances.iter().map(|instance| instance.family.as_str()).collect();
+    let mut families: Vec<&str> = contest.instances.iter().map(|instance| instance.family).collect();
     families.dedup();
     families
 }
@@ -208,91 +207,35 @@ pub(crate) fn seconds(seconds: f64) -> String {
     }
 }
 
-/// A record as a row of CSV: flat, in the order of the columns.
-#[derive(Serialize)]
-struct Row<'a> {
-    instance: Cow<'a, str>,
-    family: Cow<'a, str>,
-    sha256: &'a str,
-    logic: Option<&'a str>,
-    states: Option<&'a str>,
-    quantifiers: Option<&'a str>,
-    states_used: Option<&'a str>,
-    quantifiers_used: Option<&'a str>,
-    horizon: Option<u64>,
-    set: String,
-    solver: Cow<'a, str>,
-    version: Option<Cow<'a, str>>,
-    options: Cow<'a, str>,
-    seed: u64,
-    repetition: u32,
-    status: Status,
-    expected: Option<Answer>,
-    verified: Option<&'a str>,
-    wall_s: f64,
-    cpu_s: f64,
-    solver_s: Option<f64>,
-    rounds: Option<u64>,
-    memory_mib: f64,
-    limit_wall_s: Option<f64>,
-    limit_cpu_s: Option<f64>,
-    limit_memory_mib: Option<u64>,
-    exit_code: Option<i32>,
-    signal: Option<i32>,
-    host: &'a str,
-    variables: Option<u64>,
-    assertions: Option<u64>,
-    bytes: Option<u64>,
-    message: Option<Cow<'a, str>>,
-    queries: Option<Cow<'a, str>>,
-}
-
-impl<'a> From<&'a Record> for Row<'a> {
-    fn from(record: &'a Record) -> Self {
-        Self {
-            instance: one_line(&record.instance),
-            family: one_line(&record.family),
-            sha256: &record.sha256,
-            logic: record.logic.as_deref(),
-            states: record.states.as_deref(),
-            quantifiers: record.quantifiers.as_deref(),
-            states_used: record.states_used.as_deref(),
-            quantifiers_used: record.quantifiers_used.as_deref(),
-            horizon: record.horizon,
-            set: one_line(&record.set.join(" ")).into_owned(),
-            solver: one_line(&record.solver),
-            version: record.version.as_deref().map(one_line),
-            options: one_line(&record.options),
-            seed: record.seed,
-            repetition: record.repetition,
-            status: record.status,
-            expected: record.expected,
-            verified: record.verified.as_deref(),
-            wall_s: record.wall_s,
-            cpu_s: record.cpu_s,
-            solver_s: record.solver_s,
-            rounds: record.rounds,
-            memory_mib: record.memory_mib,
-            limit_wall_s: record.limit.wall_s,
-            limit_cpu_s: record.limit.cpu_s,
-            limit_memory_mib: record.limit.memory_mib,
-            exit_code: record.exit_code,
-            signal: record.signal,
-            host: &record.host,
-            variables: record.variables,
-            assertions: record.assertions,
-            bytes: record.bytes,
-            message: record.message.as_deref().map(one_line),
-            queries: record.queries.as_deref().map(one_line),
-        }
-    }
-}
+/// The columns of runs as CSV: the names of a record's fields, and those of its limits.
+const COLUMNS: &str = "\
+    instance,family,sha256,logic,states,quantifiers,states_used,quantifiers_used,horizon,set,solver,\
+    version,options,seed,repetition,status,expected,verified,wall_s,cpu_s,solver_s,rounds,memory_mib,\
+    limit_wall_s,limit_cpu_s,limit_memory_mib,exit_code,signal,host,variables,assertions,bytes,message,\
+    queries";
 
 /// Writes every column of every record as CSV, a line each, whatever is in names and messages.
 pub fn csv(records: &[Record], to: impl io::Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(to);
+    if !records.is_empty() {
+        writer.write_record(COLUMNS.split(',')).map_err(io::Error::other)?;
+    }
     for record in records {
-        writer.serialize(Row::from(record)).map_err(io::Error::other)?;
+        let record = serde_json::to_value(record)?;
+        let cells = COLUMNS.split(',').map(|column| match column.strip_prefix("limit_") {
+            Some(limit) => cell(&record["limit"][limit]),
+            None => cell(&record[column]),
+        });
+        writer.write_record(cells).map_err(io::Error::other)?;
     }
     writer.flush()
+}
+
+fn cell(value: &Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) => one_line(text).into_owned(),
+        Value::Array(parts) => parts.iter().map(cell).collect::<Vec<_>>().join(" "),
+        value => value.to_string(),
+    }
 }

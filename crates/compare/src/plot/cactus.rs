@@ -4,7 +4,7 @@ use svg::Node;
 use svg::node::element::path::Data;
 use svg::node::element::{Group, Path, Title};
 
-use super::{Area, Axis, DASHES, INK, color, document, line, marker, round, short, text};
+use super::{Area, Axis, DASHES, INK, MARKERS, color, document, line, marker, round, short, text};
 use crate::contest::Contest;
 use crate::score::Scores;
 
@@ -88,7 +88,7 @@ fn curve(contestant: usize, label: &str, points: &[(f64, f64)]) -> Group {
     // The last one always; of many, only some.
     let every = points.len().div_ceil(20).max(1);
     for &at in points.iter().rev().step_by(every) {
-        group.append(marker(contestant, at));
+        group.append(marker(MARKERS[contestant % MARKERS.len()], at));
     }
     group
 }
@@ -103,7 +103,7 @@ fn legend(contestant: usize, label: &str, solved: usize, y: f64) -> Group {
             .set("stroke-width", 1.5)
             .set("stroke-dasharray", DASHES[contestant % DASHES.len()]),
     );
-    sample.append(marker(contestant, (left + 18.0, y)));
+    sample.append(marker(MARKERS[contestant % MARKERS.len()], (left + 18.0, y)));
     let mut name = text(&format!("{} ({solved})", short(label, 20)), left + 44.0, y + 4.0, "start");
     name.append(Title::new(label));
     let mut group = Group::new();

@@ -11,7 +11,7 @@ use crate::contest::Contest;
 
 pub use cactus::cactus;
 pub use scatter::scatter;
-pub(crate) use scatter::{Kind, Scatter, words};
+pub(crate) use scatter::{KINDS, Kind, Scatter, words};
 
 /// Okabe and Ito's colors, which are told apart without full color vision, but for their yellow, which is too faint
 /// for a line on white.
@@ -149,10 +149,9 @@ fn text(content: &str, x: f64, y: f64, anchor: &str) -> Text {
         .set("text-anchor", anchor)
 }
 
-/// A marker of a contestant, or of whatever else is counted.
-fn marker(number: usize, at: (f64, f64)) -> Path {
+fn marker(outline: &str, at: (f64, f64)) -> Path {
     Path::new()
-        .set("d", MARKERS[number % MARKERS.len()])
+        .set("d", outline)
         .set("transform", format!("translate({} {})", round(at.0), round(at.1)))
         .set("fill", "none")
         .set("stroke-width", 1.5)

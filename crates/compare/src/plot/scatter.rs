@@ -1,9 +1,10 @@
 //! The scatter plot of two contestants: a mark for each instance, below the diagonal where the vertical one was faster.
 
+use serde::Serialize;
 use svg::Node;
 use svg::node::element::{Group, Title};
 
-use super::{Area, Axis, FAINT, INK, document, line, marker, round, short, text};
+use super::{Area, Axis, COLORS, FAINT, INK, MARKERS, document, line, marker, round, short, text};
 use crate::contest::{Cell, Contest};
 use crate::table::seconds;
 use crate::{Answer, Status};
@@ -12,43 +13,24 @@ const AREA: Area = Area { left: 64.0, top: 40.0, width: 372.0, height: 372.0 };
 /// How far beyond the limit those lie that failed otherwise.
 const BEYOND: f64 = 24.0;
 
-/// How an instance is marked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
-    /// Both solved it, and it is satisfiable.
-    Sat,
-    /// Both solved it, and it is unsatisfiable.
-    Unsat,
-    /// One of them at least did not solve it.
-    Unsolved,
+/// How instances are marked, for the page too.
+#[derive(Serialize)]
+pub(crate) struct Kind {
+    #[serde(skip)]
+    name: &'static str,
+    /// The data of a path.
+    outline: &'static str,
+    class: &'static str,
+    #[serde(skip)]
+    color: &'static str,
 }
 
-impl Kind {
-    /// All kinds, in the order of their numbers on the page.
-    pub(crate) const ALL: [Self; 3] = [Self::Sat, Self::Unsat, Self::Unsolved];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Sat => "sat",
-            Self::Unsat => "unsat",
-            Self::Unsolved => "unsolved by one or both",
-        }
-    }
-
-    /// The outline, the class and the color.
-    pub(crate) fn style(self) -> (usize, &'static str, &'static str) {
-        match self {
-            Self::Sat => (0, "c0", super::COLORS[0]),
-            Self::Unsat => (5, "c1", super::COLORS[1]),
-            Self::Unsolved => (2, "c6", super::COLORS[6]),
-        }
-    }
-
-    /// The outline as the data of a path.
-    pub(crate) fn outline(self) -> &'static str {
-        super::MARKERS[self.style().0]
-    }
-}
+/// Both solved it, and it is satisfiable, or unsatisfiable; or one of them at least did not solve it.
+pub(crate) const KINDS: [Kind; 3] = [
+    Kind { name: "sat", outline: MARKERS[0], class: "c0", color: COLORS[0] },
+    Kind { name: "unsat", outline: MARKERS[5], class: "c1", color: COLORS[1] },
+    Kind { name: "unsolved by one or both", outline: MARKERS[2], class: "c6", color: COLORS[6] },
+];
 
 /// Where a contestant's times lie on the axes that all scatter plots share.
 pub(crate) struct Scatter {
@@ -79,11 +61,11 @@ impl Scatter {
 }
 
 /// How two results on an instance are marked.
-fn kind(a: &Cell<'_>, b: &Cell<'_>) -> Kind {
+fn kind(a: &Cell<'_>, b: &Cell<'_>) -> &'static Kind {
     match (a.solved(), b.solved()) {
-        (Some(Answer::Sat), Some(Answer::Sat)) => Kind::Sat,
-        (Some(Answer::Unsat), Some(Answer::Unsat)) => Kind::Unsat,
-        _ => Kind::Unsolved,
+        (Some(Answer::Sat), Some(Answer::Sat)) => &KINDS[0],
+        (Some(Answer::Unsat), Some(Answer::Unsat)) => &KINDS[1],
+        _ => &KINDS[2],
     }
 }
 
@@ -104,11 +86,10 @@ pub fn scatter(contest: &Contest<'_>, horizontal: usize, vertical: usize) -> Str
     scatter.grid(&mut plot, contest);
     let name = |name: &str| format!("{}, seconds", short(name, 40));
     AREA.axes(&mut plot, &name(names[0]), &name(names[1]));
-    for (i, kind) in Kind::ALL.into_iter().enumerate() {
+    for (i, Kind { name, outline, class, color }) in KINDS.iter().enumerate() {
         let x = AREA.left + 8.0 + [0.0, 56.0, 122.0][i];
-        let (outline, class, stroke) = kind.style();
-        plot.append(marker(outline, (x, 14.0)).set("class", class).set("stroke", stroke));
-        plot.append(text(kind.name(), x + 9.0, 18.0, "start"));
+        plot.append(marker(outline, (x, 14.0)).set("class", *class).set("stroke", *color));
+        plot.append(text(name, x + 9.0, 18.0, "start"));
     }
     let mut points = Group::new().set("class", "points");
     for (i, row) in contest.cells.iter().enumerate() {
@@ -118,10 +99,10 @@ pub fn scatter(contest: &Contest<'_>, horizontal: usize, vertical: usize) -> Str
         else {
             continue;
         };
-        let (outline, class, stroke) = kind(a, b).style();
+        let &Kind { outline, class, color, .. } = kind(a, b);
         let mut point = marker(outline, (AREA.left + x, AREA.bottom() - y));
         point.append(Title::new(format!("{}: {}, {}", contest.instances[i].label, words(a), words(b))));
-        points.append(point.set("class", class).set("stroke", stroke));
+        points.append(point.set("class", class).set("stroke", color));
     }
     plot.append(points);
     let title = format!("Wall time of {} against {}", names[0], names[1]);
