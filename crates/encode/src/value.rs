@@ -73,13 +73,6 @@ impl Val {
         }
     }
 
-    fn cases(self) -> Result<Vec<(i64, Term)>, Val> {
-        match self {
-            Val::Cases(cases) => Ok(cases),
-            other => Err(other),
-        }
-    }
-
     /// As a signed bit-vector term with its bounds.
     fn bits(&self, terms: &mut Terms) -> (Term, i64, i64) {
         match self {
@@ -188,7 +181,7 @@ pub(crate) fn translate<L>(terms: &mut Terms, expr: &Expr<L>, leaves: &mut impl 
             if let Val::Number(a) = a {
                 return Val::Number(terms.int_div(a, *c));
             }
-            pointwise(terms, a, |v| v.div_euclid(*c), |v| (v.div_euclid(*c) + 1).saturating_mul(*c))
+            divide(terms, a, *c)
         }
         Expr::Mod(a, c) => {
             // a mod c = a - c * (a div c)
@@ -196,17 +189,12 @@ pub(crate) fn translate<L>(terms: &mut Terms, expr: &Expr<L>, leaves: &mut impl 
             if let Val::Number(a) = a {
                 return Val::Number(terms.int_mod(a, *c));
             }
-            let quotient = pointwise(
-                terms,
-                a.clone(),
-                |v| v.div_euclid(*c),
-                |v| (v.div_euclid(*c) + 1).saturating_mul(*c),
-            );
             match a {
                 Val::Cases(cases) => {
                     merge(terms, cases.into_iter().map(|(v, when)| (v.rem_euclid(*c), when)))
                 }
                 bits => {
+                    let quotient = divide(terms, bits.clone(), *c);
                     let product = multiply(terms, -*c, quotient);
                     let sum = add(terms, bits, product);
                     let (term, _, _) = sum.bits(terms);
@@ -267,28 +255,22 @@ pub(crate) fn merge(terms: &mut Terms, cases: impl Iterator<Item = (i64, Term)>)
 fn add(terms: &mut Terms, a: Val, b: Val) -> Val {
     if let Some(sort) = a.number_sort_with(terms, &b) {
         let (a, b) = (a.number(terms, sort), b.number(terms, sort));
-        let real = sort == Sort::Real;
-        return Val::Number(if real { terms.real_add(&[a, b]) } else { terms.int_add(&[a, b]) });
+        return Val::Number(terms.add(&[a, b]));
     }
-    match (a.cases(), b.cases()) {
-        (Ok(a), Ok(b)) => {
-            let mut sums = Vec::with_capacity(a.len() * b.len());
-            for &(x, when_x) in &a {
-                for &(y, when_y) in &b {
-                    sums.push((x + y, terms.and2(when_x, when_y)));
-                }
+    if let (Val::Cases(a), Val::Cases(b)) = (&a, &b) {
+        let mut sums = Vec::with_capacity(a.len() * b.len());
+        for &(x, when_x) in a {
+            for &(y, when_y) in b {
+                sums.push((x + y, terms.and2(when_x, when_y)));
             }
-            merge(terms, sums.into_iter())
         }
-        (a, b) => {
-            let whole = |v: Result<Vec<(i64, Term)>, Val>| v.map_or_else(|bits| bits, Val::Cases);
-            let ((a, alo, ahi), (b, blo, bhi)) = (whole(a).bits(terms), whole(b).bits(terms));
-            let (lo, hi) = (alo + blo, ahi + bhi);
-            let w = width(lo, hi);
-            let (a, b) = (extend(terms, a, w), extend(terms, b, w));
-            Val::Bits { term: terms.bv_add(a, b), lo, hi }
-        }
+        return merge(terms, sums.into_iter());
     }
+    let ((a, alo, ahi), (b, blo, bhi)) = (a.bits(terms), b.bits(terms));
+    let (lo, hi) = (alo + blo, ahi + bhi);
+    let w = width(lo, hi);
+    let (a, b) = (extend(terms, a, w), extend(terms, b, w));
+    Val::Bits { term: terms.bv_add(a, b), lo, hi }
 }
 
 fn multiply(terms: &mut Terms, c: i64, a: Val) -> Val {
@@ -308,24 +290,24 @@ fn multiply(terms: &mut Terms, c: i64, a: Val) -> Val {
     }
 }
 
-/// A monotone step function of a number: `value(v)`, constant up to but not including `next(v)`. On bit-vectors it
-/// becomes a chain of comparisons with the steps, so no division circuit is needed.
-fn pointwise(terms: &mut Terms, a: Val, value: impl Fn(i64) -> i64, next: impl Fn(i64) -> i64) -> Val {
+/// A number divided by a positive constant, rounded down. On bit-vectors this becomes a chain of comparisons with the
+/// steps, so no division circuit is needed.
+fn divide(terms: &mut Terms, a: Val, c: i64) -> Val {
     match a {
-        Val::Cases(cases) => merge(terms, cases.into_iter().map(|(v, when)| (value(v), when))),
+        Val::Cases(cases) => merge(terms, cases.into_iter().map(|(v, when)| (v.div_euclid(c), when))),
         bits => {
             let (_, lo, hi) = bits.bits(terms);
             let mut cases = Vec::new();
             let mut at = lo;
             let mut below = Term::FALSE;
             while at <= hi {
-                let end = next(at);
+                let end = (at.div_euclid(c) + 1).saturating_mul(c);
                 let upto = if end > hi {
                     Term::TRUE
                 } else {
                     compare(terms, Comparison::Lt, bits.clone(), constant(end))
                 };
-                cases.push((value(at), terms.and2(upto, !below)));
+                cases.push((at.div_euclid(c), terms.and2(upto, !below)));
                 below = upto;
                 at = end;
             }
@@ -338,39 +320,34 @@ fn pointwise(terms: &mut Terms, a: Val, value: impl Fn(i64) -> i64, next: impl F
 pub(crate) fn compare(terms: &mut Terms, op: Comparison, a: Val, b: Val) -> Term {
     if let Some(sort) = a.number_sort_with(terms, &b) {
         let (a, b) = (a.number(terms, sort), b.number(terms, sort));
-        return match (op, sort == Sort::Real) {
-            (Comparison::Eq, _) => terms.eq(a, b),
-            (Comparison::Lt, true) => terms.real_lt(a, b),
-            (Comparison::Le, true) => terms.real_le(a, b),
-            (Comparison::Lt, false) => terms.int_lt(a, b),
-            (Comparison::Le, false) => terms.int_le(a, b),
+        return match op {
+            Comparison::Eq => terms.eq(a, b),
+            Comparison::Lt => terms.lt(a, b),
+            Comparison::Le => terms.le(a, b),
         };
     }
-    match (a.cases(), b.cases()) {
-        (Ok(a), Ok(b)) => match op {
-            Comparison::Eq => equal_cases(terms, &a, &b),
-            Comparison::Lt => less_cases(terms, &a, &b),
-            Comparison::Le => !less_cases(terms, &b, &a),
-        },
-        (a, b) => {
-            let whole = |v: Result<Vec<(i64, Term)>, Val>| v.map_or_else(|bits| bits, Val::Cases);
-            let ((a, alo, ahi), (b, blo, bhi)) = (whole(a).bits(terms), whole(b).bits(terms));
-            match op {
-                Comparison::Eq if ahi < blo || bhi < alo => return Term::FALSE,
-                Comparison::Lt if ahi < blo => return Term::TRUE,
-                Comparison::Lt if bhi <= alo => return Term::FALSE,
-                Comparison::Le if ahi <= blo => return Term::TRUE,
-                Comparison::Le if bhi < alo => return Term::FALSE,
-                _ => {}
-            }
-            let w = width(alo.min(blo), ahi.max(bhi));
-            let (a, b) = (extend(terms, a, w), extend(terms, b, w));
-            match op {
-                Comparison::Eq => terms.eq(a, b),
-                Comparison::Lt => terms.bv_slt(a, b),
-                Comparison::Le => terms.bv_sle(a, b),
-            }
-        }
+    if let (Val::Cases(a), Val::Cases(b)) = (&a, &b) {
+        return match op {
+            Comparison::Eq => equal_cases(terms, a, b),
+            Comparison::Lt => less_cases(terms, a, b),
+            Comparison::Le => !less_cases(terms, b, a),
+        };
+    }
+    let ((a, alo, ahi), (b, blo, bhi)) = (a.bits(terms), b.bits(terms));
+    match op {
+        Comparison::Eq if ahi < blo || bhi < alo => return Term::FALSE,
+        Comparison::Lt if ahi < blo => return Term::TRUE,
+        Comparison::Lt if bhi <= alo => return Term::FALSE,
+        Comparison::Le if ahi <= blo => return Term::TRUE,
+        Comparison::Le if bhi < alo => return Term::FALSE,
+        _ => {}
+    }
+    let w = width(alo.min(blo), ahi.max(bhi));
+    let (a, b) = (extend(terms, a, w), extend(terms, b, w));
+    match op {
+        Comparison::Eq => terms.eq(a, b),
+        Comparison::Lt => terms.bv_slt(a, b),
+        Comparison::Le => terms.bv_sle(a, b),
     }
 }
 

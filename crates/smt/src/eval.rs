@@ -143,19 +143,12 @@ impl Evaluation {
     }
 }
 
-/// The first assertion that is false under the model. Assertions that cannot be evaluated
-/// ([`Verdict::Unknown`]: quantified ones) do not count as violated; [`check_model`] counts them.
-#[must_use]
-pub fn first_violated(script: &Script, model: &Model) -> Option<usize> {
-    check_model(script, model).violated
-}
-
 /// What became of the assertions of a script under a model.
 #[derive(Copy, Clone, PartialEq, Eq, Debug, Default)]
 pub struct ModelCheck {
     /// The first assertion that is false.
     pub violated: Option<usize>,
-    /// How many assertions could not be evaluated (up to the violated one, if any).
+    /// How many assertions could not be evaluated, quantified ones (up to the violated one, if any).
     pub unknown: usize,
 }
 

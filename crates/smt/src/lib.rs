@@ -2,7 +2,7 @@
 //!
 //! [`Terms`] is a hash-consed arena of sort-checked terms, [`Script`] a list of assertions over
 //! one, [`write_script`] prints a script as a benchmark of its own, and [`Printer`] feeds one to a
-//! solver bit by bit. [`read_script`] reads one. [`first_violated`] evaluates a script under a [`Model`]. Nothing here
+//! solver bit by bit. [`read_script`] reads one. [`check_model`] evaluates a script under a [`Model`]. Nothing here
 //! recurses on the depth of terms, and shared terms are printed once.
 
 mod apply;
@@ -18,7 +18,7 @@ mod terms;
 mod value;
 mod write;
 
-pub use eval::{Evaluation, ModelCheck, Verdict, check_model, check_partial_model, first_violated};
+pub use eval::{Evaluation, ModelCheck, Verdict, check_model, check_partial_model};
 pub use features::{Features, logic};
 pub use lexer::{Context, Token, Tokens, parts, tokens};
 pub use rational::Rational;

@@ -108,67 +108,17 @@ fn is_simple(text: &str) -> bool {
 
 /// Whether SMT-LIB or a solver may have a meaning for the word.
 fn is_word(text: &str) -> bool {
-    const WORDS: &[&str] = &[
-        "true",
-        "false",
-        "not",
-        "and",
-        "or",
-        "xor",
-        "ite",
-        "distinct",
-        "let",
-        "forall",
-        "exists",
-        "par",
-        "as",
-        "match",
-        "div",
-        "mod",
-        "abs",
-        "divisible",
-        "to_real",
-        "to_int",
-        "is_int",
-        "concat",
-        "extract",
-        "select",
-        "store",
-        "const",
-        "is",
-        "lambda",
-        "choice",
-        "root",
-        "pi",
-        "iff",
-        "implies",
-        "if",
-        "nat",
-        "success",
-        "error",
-        "unsupported",
-        "unknown",
-        "sat",
-        "unsat",
-        "logic",
-        "theory",
-        "continued-execution",
-        "immediate-exit",
-        "incomplete",
-        "memout",
-        "BINARY",
-        "DECIMAL",
-        "HEXADECIMAL",
-        "NUMERAL",
-        "STRING",
-    ];
-    const PREFIXES: &[&str] = &[
-        "bv", "ext_", "rotate_", "repeat", "zero_", "sign_", "int2", "nat2", "int.", "real.", "str.", "re.",
-        "seq.", "set.", "bag.", "rel.", "fp", "to_", "from_", "ubv_", "sbv_", "get-", "set-", "tuple",
-    ];
-    WORDS.contains(&text)
+    const WORDS: &str = "\
+        true false not and or xor ite distinct let forall exists par as match div mod abs divisible to_real \
+        to_int is_int concat extract select store const is lambda choice root pi iff implies if nat success \
+        error unsupported unknown sat unsat logic theory continued-execution immediate-exit incomplete \
+        memout BINARY DECIMAL HEXADECIMAL NUMERAL STRING";
+    const PREFIXES: &str = "\
+        bv ext_ rotate_ repeat zero_ sign_ int2 nat2 int. real. str. re. seq. set. bag. rel. fp to_ from_ \
+        ubv_ sbv_ get- set- tuple";
+    WORDS.split(' ').any(|word| word == text)
         || !text.bytes().any(|b| b.is_ascii_alphanumeric())
-        || PREFIXES.iter().any(|prefix| text.starts_with(prefix))
+        || PREFIXES.split(' ').any(|prefix| text.starts_with(prefix))
 }
 
 /// A decimal number, without the formatting machinery: the writer writes millions of them.

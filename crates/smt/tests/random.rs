@@ -30,7 +30,7 @@ fn sorts_are_checked() {
             let _ = t.eq(b, v);
         },
         |t, _, v| {
-            let _ = t.int_le(v, v);
+            let _ = t.le(v, v);
         },
         |t, b, _| {
             let _ = t.bv_neg(b);

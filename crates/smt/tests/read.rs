@@ -36,8 +36,8 @@ fn script(random: &mut Random) -> Script {
         });
         let factor = Rational::new(random.below(9) as i128 - 4, 1 + random.below(4) as i128);
         let product = terms.real_mul(factor.expect("not zero"), r);
-        let sum = terms.real_add(&[product, s]);
-        booleans.push(terms.real_lt(sum, r));
+        let sum = terms.add(&[product, s]);
+        booleans.push(terms.lt(sum, r));
         let stem = terms.stem(&format!("{name}c"));
         let c = terms.symbol(stem, time, Sort::Enum(color));
         let constant = terms.constructor(color, random.below(4) as u32);

@@ -2,7 +2,7 @@
 
 use hyperplan_smt::{
     Header, Model, Printer, Rational, Script, Sort, Status, Term, Terms, Value, WriteOptions, check_model,
-    first_violated, symbol_text, term_text, write_script,
+    symbol_text, term_text, write_script,
 };
 
 fn written(script: &Script, options: &WriteOptions) -> String {
@@ -158,8 +158,8 @@ fn numbers() {
     let n = terms.symbol(stem, None, Sort::Int);
     let minus = terms.int(-5);
     let product = terms.int_mul(-3, n);
-    let sum = terms.int_add(&[product, minus]);
-    let less = terms.int_lt(sum, n);
+    let sum = terms.add(&[product, minus]);
+    let less = terms.lt(sum, n);
     assert_eq!(term_text(&terms, less), "(< (+ (- 5) (* (- 3) n)) n)");
 }
 
@@ -176,9 +176,8 @@ fn violations_are_found_and_quantifiers_skipped() {
     script.assert(all);
     script.assert(!b);
     let model: Model = [(a, Value::Bool(false)), (b, Value::Bool(true))].into_iter().collect();
-    assert_eq!(first_violated(&script, &model), Some(2));
     let check = check_model(&script, &model);
     assert_eq!((check.violated, check.unknown), (Some(2), 1));
     let model: Model = [(a, Value::Bool(true))].into_iter().collect();
-    assert_eq!(first_violated(&script, &model), None);
+    assert_eq!(check_model(&script, &model).violated, None);
 }

@@ -123,11 +123,11 @@ fn integers_and_reals() {
         let n = script.terms.symbol(n, None, Sort::Int);
         let (three, minus) = (script.terms.int(3), script.terms.int(-7));
         let sum = script.terms.int_mul(2, n);
-        let below = script.terms.int_lt(sum, minus);
+        let below = script.terms.lt(sum, minus);
         let rest = script.terms.int_mod(n, 5);
         let rest = script.terms.eq(rest, three);
         let low = script.terms.int(-9);
-        let low = script.terms.int_le(low, n);
+        let low = script.terms.le(low, n);
         script.clause(&[below]);
         script.clause(&[rest]);
         script.clause(&[low]);

@@ -5,6 +5,7 @@ use super::Trouble;
 use super::operators::{Arith, Compare, arity, chain};
 use crate::rational::Rational;
 use crate::term::{Sort, Term};
+use crate::terms::Terms;
 use crate::value::Value;
 
 impl Reader<'_> {
@@ -12,14 +13,14 @@ impl Reader<'_> {
     pub(super) fn arith(&mut self, at: usize, arith: Arith, args: &[Term]) -> Result<Term, Trouble> {
         let args = self.numbers(at, args)?;
         match arith {
-            Arith::Add => self.sum(at, &args),
+            Arith::Add => Ok(self.terms().add(&args)),
             Arith::Sub if args.len() == 1 => self.negated(at, args[0]),
             Arith::Sub => {
                 let mut summands = vec![args[0]];
                 for &t in &args[1..] {
                     summands.push(self.negated(at, t)?);
                 }
-                self.sum(at, &summands)
+                Ok(self.terms().add(&summands))
             }
             Arith::Mul => args[1..].iter().try_fold(args[0], |product, &t| self.product(at, product, t)),
             Arith::Div => {
@@ -56,15 +57,7 @@ impl Reader<'_> {
     /// Numbers in order.
     pub(super) fn compare(&mut self, at: usize, compare: Compare, args: &[Term]) -> Result<Term, Trouble> {
         let args = self.numbers(at, args)?;
-        let real = self.sort_of(args[0]) == Sort::Real;
-        Ok(chain(
-            self.terms(),
-            compare,
-            &args,
-            |terms, a, b| {
-                if real { terms.real_le(a, b) } else { terms.int_le(a, b) }
-            },
-        ))
+        Ok(chain(self.terms(), compare, &args, Terms::le))
     }
 
     /// `(_ divisible n)`.
@@ -83,14 +76,6 @@ impl Reader<'_> {
         let args = self.alike(at, args)?;
         match self.sort_of(args[0]) {
             Sort::Int | Sort::Real => Ok(args),
-            sort => Err(Trouble::syntax(at, format!("a number is needed here, not {sort}"))),
-        }
-    }
-
-    fn sum(&mut self, at: usize, args: &[Term]) -> Result<Term, Trouble> {
-        match self.sort_of(args[0]) {
-            Sort::Int => Ok(self.terms().int_add(args)),
-            Sort::Real => Ok(self.terms().real_add(args)),
             sort => Err(Trouble::syntax(at, format!("a number is needed here, not {sort}"))),
         }
     }

@@ -29,7 +29,7 @@ impl Reader<'_> {
         args: &[Term],
     ) -> Result<Term, Trouble> {
         self.same_width(at, args)?;
-        let le = |terms: &mut Terms, a, b| if signed { terms.bv_sle(a, b) } else { terms.bv_ule(a, b) };
+        let le = if signed { Terms::bv_sle } else { Terms::bv_ule };
         Ok(chain(self.terms(), compare, args, le))
     }
 

@@ -4,7 +4,7 @@ use rustc_hash::FxHashMap;
 
 use super::Reader;
 use super::Trouble;
-use crate::term::{Op, Sort, Term};
+use crate::term::{Op, Term};
 use crate::terms::{Terms, View};
 use crate::value::Value;
 
@@ -79,7 +79,6 @@ impl Reader<'_> {
 
     /// The node with other children.
     fn rebuilt(&mut self, at: usize, t: Term, children: &[Term]) -> Result<Term, Trouble> {
-        let sort = self.sort_of(t);
         let terms = self.terms();
         let op = match terms.view(t) {
             View::Const(_) | View::Symbol(..) | View::Bound(..) => return Ok(t),
@@ -101,10 +100,8 @@ impl Reader<'_> {
             (Op::BvNeg, &[a]) => Some(terms.bv_neg(a)),
             (Op::BvUlt, &[a, b]) => Some(terms.bv_ult(a, b)),
             (Op::BvSlt, &[a, b]) => Some(terms.bv_slt(a, b)),
-            (Op::Add, _) if sort == Sort::Int => Some(terms.int_add(children)),
-            (Op::Add, _) => Some(terms.real_add(children)),
-            (Op::Le, &[a, b]) if terms.sort(a) == Sort::Int => Some(terms.int_le(a, b)),
-            (Op::Le, &[a, b]) => Some(terms.real_le(a, b)),
+            (Op::Add, _) => Some(terms.add(children)),
+            (Op::Le, &[a, b]) => Some(terms.le(a, b)),
             (Op::ToReal, &[a]) => Some(terms.to_real(a)),
             (Op::Mul | Op::IntDiv | Op::IntMod, &[a, b]) => scaled(terms, op, a, b),
             _ => None,

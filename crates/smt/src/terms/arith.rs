@@ -16,16 +16,6 @@ impl Terms {
         self.constant(Value::Real(value))
     }
 
-    /// Sum of integers.
-    pub fn int_add(&mut self, ts: &[Term]) -> Term {
-        self.sum(Sort::Int, ts)
-    }
-
-    /// Sum of reals.
-    pub fn real_add(&mut self, ts: &[Term]) -> Term {
-        self.sum(Sort::Real, ts)
-    }
-
     /// A multiple of an integer.
     pub fn int_mul(&mut self, c: i64, t: Term) -> Term {
         let factor = self.int(c);
@@ -48,24 +38,18 @@ impl Terms {
         self.arith(Op::Mul, Sort::Real, Sort::Real, &[factor, t])
     }
 
-    /// `a <= b` on integers.
-    pub fn int_le(&mut self, a: Term, b: Term) -> Term {
-        self.le(Sort::Int, a, b)
+    /// `a <= b`, on integers or on reals.
+    pub fn le(&mut self, a: Term, b: Term) -> Term {
+        let sort = self.number_sort(a);
+        if a == b {
+            return Term::TRUE;
+        }
+        self.arith(Op::Le, sort, Sort::Bool, &[a, b])
     }
 
-    /// `a < b` on integers.
-    pub fn int_lt(&mut self, a: Term, b: Term) -> Term {
-        !self.le(Sort::Int, b, a)
-    }
-
-    /// `a <= b` on reals.
-    pub fn real_le(&mut self, a: Term, b: Term) -> Term {
-        self.le(Sort::Real, a, b)
-    }
-
-    /// `a < b` on reals.
-    pub fn real_lt(&mut self, a: Term, b: Term) -> Term {
-        !self.le(Sort::Real, b, a)
+    /// `a < b`, on integers or on reals.
+    pub fn lt(&mut self, a: Term, b: Term) -> Term {
+        !self.le(b, a)
     }
 
     /// Division by a positive constant, rounded down.
@@ -90,15 +74,9 @@ impl Terms {
         self.arith(Op::ToReal, Sort::Int, Sort::Real, &[t])
     }
 
-    fn le(&mut self, sort: Sort, a: Term, b: Term) -> Term {
-        if a == b {
-            return self.arith_checked(sort, Term::TRUE, a);
-        }
-        self.arith(Op::Le, sort, Sort::Bool, &[a, b])
-    }
-
-    /// The sum, with the constants gathered into one unless that overflows.
-    fn sum(&mut self, sort: Sort, ts: &[Term]) -> Term {
+    /// Sum of integers or of reals, one at least, with the constants gathered into one unless that overflows.
+    pub fn add(&mut self, ts: &[Term]) -> Term {
+        let sort = self.number_sort(ts[0]);
         let zero = Value::default_of(sort);
         let mut constant = zero;
         let mut summands = Vec::with_capacity(ts.len() + 1);
@@ -125,6 +103,12 @@ impl Terms {
             self.arith_checked(of, t, t);
         }
         self.fold(op, sort, args, &[]).unwrap_or_else(|| self.intern(op, sort, args))
+    }
+
+    fn number_sort(&self, t: Term) -> Sort {
+        let sort = self.sort(t);
+        assert!(matches!(sort, Sort::Int | Sort::Real), "arithmetic: a number is needed, not {sort}");
+        sort
     }
 
     fn arith_checked(&self, sort: Sort, result: Term, t: Term) -> Term {

@@ -140,10 +140,10 @@ impl Pool {
         let k = random.below(7) as i64 - 3;
         let d = random.below(5) as i64 + 1;
         match random.below(6) {
-            0 => self.push(&[a, b, a], Plain::Int(x + y + x), |t, s| t.int_add(s)),
+            0 => self.push(&[a, b, a], Plain::Int(x + y + x), |t, s| t.add(s)),
             1 => self.push(&[a], Plain::Int(k * x), |t, s| t.int_mul(k, s[0])),
-            2 => self.push(&[a, b], Plain::Bool(x <= y), |t, s| t.int_le(s[0], s[1])),
-            3 => self.push(&[a, b], Plain::Bool(x < y), |t, s| t.int_lt(s[0], s[1])),
+            2 => self.push(&[a, b], Plain::Bool(x <= y), |t, s| t.le(s[0], s[1])),
+            3 => self.push(&[a, b], Plain::Bool(x < y), |t, s| t.lt(s[0], s[1])),
             4 => self.push(&[a], Plain::Int(x.div_euclid(d)), |t, s| t.int_div(s[0], d)),
             _ => self.push(&[a], Plain::Int(x.rem_euclid(d)), |t, s| t.int_mod(s[0], d)),
         }
