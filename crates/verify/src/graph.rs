@@ -7,20 +7,9 @@ use rustc_hash::FxHashMap;
 use std::rc::Rc;
 use typed_index_collections::TiVec;
 
-/// A state that was met.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(crate) struct StateId(pub(crate) u32);
-
-impl From<usize> for StateId {
-    fn from(index: usize) -> Self {
-        StateId(u32::try_from(index).expect("the budget of states is kept below 2^32"))
-    }
-}
-
-impl From<StateId> for usize {
-    fn from(id: StateId) -> usize {
-        id.0 as usize
-    }
+id! {
+    /// A state that was met.
+    StateId, "the budget of states is kept below 2^32"
 }
 
 /// A transition, seen from its source.

@@ -7,41 +7,19 @@ use rustc_hash::FxHashMap;
 use std::rc::Rc;
 use typed_index_collections::TiVec;
 
-/// A joint state of a block; 0 is [`JointId::START`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(crate) struct JointId(pub(crate) u32);
+id! {
+    /// A joint state of a block; 0 is [`JointId::START`].
+    JointId, "the budget of states is kept below 2^32"
+}
 
 impl JointId {
     /// Before time 0: its moves lead to the initial states.
     pub(crate) const START: JointId = JointId(0);
 }
 
-impl From<usize> for JointId {
-    fn from(index: usize) -> Self {
-        JointId(u32::try_from(index).expect("the budget of states is kept below 2^32"))
-    }
-}
-
-impl From<JointId> for usize {
-    fn from(id: JointId) -> usize {
-        id.0 as usize
-    }
-}
-
-/// What the paths of a block just did together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(crate) struct DeedId(pub(crate) u32);
-
-impl From<usize> for DeedId {
-    fn from(index: usize) -> Self {
-        DeedId(u32::try_from(index).expect("joint moves are kept below 2^32"))
-    }
-}
-
-impl From<DeedId> for usize {
-    fn from(id: DeedId) -> usize {
-        id.0 as usize
-    }
+id! {
+    /// What the paths of a block just did together.
+    DeedId, "joint moves are kept below 2^32"
 }
 
 /// A joint transition, seen from its source.

@@ -49,6 +49,9 @@
 //! most of them at a bit for each joint state; a decisive pair gives back the paths that lead to it by looking for
 //! some predecessor in the step before, and so on back to the start.
 
+#[macro_use]
+mod id;
+
 mod atoms;
 mod check;
 mod domain;

@@ -5,36 +5,14 @@ use rustc_hash::FxHashMap;
 use std::rc::Rc;
 use typed_index_collections::TiVec;
 
-/// A residual. Operands have smaller ids than what is built from them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(crate) struct ResidualId(pub(crate) u32);
-
-impl From<usize> for ResidualId {
-    fn from(index: usize) -> Self {
-        ResidualId(u32::try_from(index).expect("entries, and so residuals, are kept below 2^32"))
-    }
+id! {
+    /// A residual. Operands have smaller ids than what is built from them.
+    ResidualId, "entries, and so residuals, are kept below 2^32"
 }
 
-impl From<ResidualId> for usize {
-    fn from(id: ResidualId) -> usize {
-        id.0 as usize
-    }
-}
-
-/// An elementary proposition of the objective.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(crate) struct AtomId(pub(crate) u32);
-
-impl From<usize> for AtomId {
-    fn from(index: usize) -> Self {
-        AtomId(u32::try_from(index).expect("fewer atoms than bytes of the problem file"))
-    }
-}
-
-impl From<AtomId> for usize {
-    fn from(id: AtomId) -> usize {
-        id.0 as usize
-    }
+id! {
+    /// An elementary proposition of the objective.
+    AtomId, "fewer atoms than bytes of the problem file"
 }
 
 /// `&` or `|`; also the family of an operator, by what its unrolling begins with.

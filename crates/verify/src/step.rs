@@ -12,6 +12,7 @@ use crate::valuation::ValuationId;
 use crate::value::{Pair, ValueId};
 use hyperplan_problem::{Mode, PathId};
 use std::rc::Rc;
+use typed_index_collections::TiVec;
 
 impl Search<'_> {
     /// All joint moves of a block.
@@ -177,28 +178,12 @@ impl Search<'_> {
             took: &self.took,
         };
         let valuations = &mut self.valuations;
-        let by_state = match by_state.get(mv.to).copied().flatten() {
-            Some(known) => known,
-            None => {
-                let part = valuations.part(scene.values(state_atoms));
-                if *local_states || level == 0 {
-                    by_state.resize(joint.len(), None);
-                    by_state[mv.to] = Some(part);
-                }
-                part
-            }
-        };
-        let by_deed = match by_deed.get(mv.deed).copied().flatten() {
-            Some(known) => known,
-            None => {
-                let part = valuations.part(scene.values(action_atoms));
-                if *local_actions || level == 0 {
-                    by_deed.resize(joint.deeds(), None);
-                    by_deed[mv.deed] = Some(part);
-                }
-                part
-            }
-        };
+        let keep = *local_states || level == 0;
+        let find = || valuations.part(scene.values(state_atoms));
+        let by_state = remembered(by_state, mv.to, joint.len(), keep, find);
+        let keep = *local_actions || level == 0;
+        let find = || valuations.part(scene.values(action_atoms));
+        let by_deed = remembered(by_deed, mv.deed, joint.deeds(), keep, find);
         let mut all = valuations.join(by_state, by_deed);
         all = valuations.join(base, all);
         if mixed_atoms.is_empty() {
@@ -219,4 +204,25 @@ impl Search<'_> {
         };
         self.valuations.part(scene.values(&self.fixed_atoms))
     }
+}
+
+/// What is known of one of `all` ids; found if nothing is, and then kept, if it may be.
+fn remembered<K: Copy>(
+    known: &mut TiVec<K, Option<ValuationId>>,
+    id: K,
+    all: usize,
+    keep: bool,
+    find: impl FnOnce() -> ValuationId,
+) -> ValuationId
+where
+    usize: From<K>,
+{
+    known.get(id).copied().flatten().unwrap_or_else(|| {
+        let found = find();
+        if keep {
+            known.resize(all, None);
+            known[id] = Some(found);
+        }
+        found
+    })
 }
