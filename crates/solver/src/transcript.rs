@@ -4,7 +4,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use hyperplan_smt::Status;
+use hyperplan_smt::{Status, write_comment};
 
 use crate::error::Error;
 
@@ -23,12 +23,7 @@ impl Transcript {
         let file = numbered(directory, solver)?;
         let mut transcript = Transcript { file: BufWriter::new(file) };
         if let Some(status) = status {
-            let status = match status {
-                Status::Sat => "sat",
-                Status::Unsat => "unsat",
-                Status::Unknown => "unknown",
-            };
-            transcript.keep(format!("(set-info :status {status})\n").as_bytes());
+            transcript.keep(format!("(set-info :status {})\n", status.text()).as_bytes());
         }
         Ok(transcript)
     }
@@ -45,10 +40,7 @@ impl Transcript {
 
     /// Keeps what the solver said, after what it was told last.
     pub(crate) fn comment(&mut self, text: &str) {
-        for line in text.lines() {
-            // A lone carriage return would end the comment for some readers.
-            self.keep(format!("; {}\n", line.replace('\r', " ").trim_end()).as_bytes());
-        }
+        let _ = write_comment(&mut self.file, text);
     }
 }
 

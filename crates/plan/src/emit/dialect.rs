@@ -3,17 +3,15 @@
 use crate::config::Quantifiers;
 use crate::fact::{Error, Note};
 use hyperplan_smt::{Features, logic};
-use hyperplan_solver::{Facts, Spec};
+use hyperplan_solver::{Profile, Spec};
 use std::sync::Arc;
 
 /// What the solver takes that the benchmark is for.
-pub(super) struct Dialect(Option<Facts>);
+pub(super) struct Dialect(Option<Arc<Profile>>);
 
 impl Dialect {
     pub(super) fn new(solver: Option<&Spec>) -> Self {
-        // Of a command nothing is known.
-        let known = solver.filter(|solver| !matches!(solver, Spec::Command(_)));
-        Dialect(known.map(Facts::of))
+        Dialect(solver.and_then(Spec::profile))
     }
 
     /// Quantifiers are kept where the solver takes them.
@@ -26,7 +24,7 @@ impl Dialect {
     /// Refuses quantifiers that the solver does not take.
     pub(super) fn demand_quantifiers(&self, blocks: usize) -> Result<(), Error> {
         match &self.0 {
-            Some(facts) if blocks > 1 => Ok(facts.demand_quantifiers(blocks > 2)?),
+            Some(profile) if blocks > 1 => Ok(profile.demand_quantifiers(blocks > 2)?),
             _ => Ok(()),
         }
     }
@@ -34,10 +32,10 @@ impl Dialect {
     /// The logic: the one that the terms need and no more, unless another serves the solver better.
     pub(super) fn logic(&self, features: &Features, notes: &mut Vec<Note>) -> Result<String, Error> {
         let smallest = logic(features);
-        let Some(facts) = &self.0 else { return Ok(smallest.to_owned()) };
-        let logic = facts.logic(features)?;
+        let Some(profile) = &self.0 else { return Ok(smallest.to_owned()) };
+        let logic = profile.logic(features)?;
         if logic != smallest {
-            notes.push(Note::Logic { logic: logic.clone(), smallest, solver: facts.name().to_owned() });
+            notes.push(Note::Logic { logic: logic.clone(), smallest, solver: profile.name().to_owned() });
         }
         Ok(logic)
     }

@@ -185,7 +185,7 @@ impl Entry {
                     return Err((like.span().start, what));
                 }
             },
-            None => same.map_or_else(plain, |profile| Profile::clone(profile)),
+            None => same.map_or_else(|| Profile::plain(&name), |profile| Profile::clone(profile)),
         };
         let program = match self.program {
             Some(program) if program.get_ref().trim().is_empty() => {
@@ -227,29 +227,6 @@ impl Entry {
             install: self.install.unwrap_or(base.install),
             origin: origin.map(Path::to_owned),
         })
-    }
-}
-
-/// What a solver is like if nothing is said.
-fn plain() -> Profile {
-    let setup = ["(set-option :print-success false)", "(set-option :produce-models true)"];
-    Profile {
-        name: String::new(),
-        aliases: Vec::new(),
-        program: String::new(),
-        arguments: Vec::new(),
-        one_shot: None,
-        incremental: true,
-        assumptions: Assumptions::Check,
-        setup: setup.map(str::to_owned).to_vec(),
-        logic: None,
-        seed: None,
-        theories: None,
-        quantifiers: Quantifiers::Any,
-        version: vec!["--version".to_owned()],
-        tells_version: false,
-        install: Install::default(),
-        origin: None,
     }
 }
 

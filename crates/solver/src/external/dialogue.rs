@@ -3,8 +3,7 @@
 use hyperplan_smt::{Features, Op, Printer, Script, Term, Value};
 
 use super::exchange::{Exchange, REASON, VERSION};
-use super::facts::Facts;
-use super::profile::Assumptions;
+use super::profile::{Assumptions, Profile};
 use super::program::Program;
 use crate::deadline::Deadline;
 use crate::error::{Error, Unknown};
@@ -19,21 +18,14 @@ impl Program {
     /// The logic is chosen by what is known now, and where more may follow, it leaves room.
     pub(super) fn logic(&self, features: Features, options: &Options) -> Result<String, Error> {
         let quantifiers = features.quantifiers || options.quantifiers() > Quantifiers::None;
-        let known = self.profile.as_deref().map(Facts::of_profile);
-        let facts = known.unwrap_or_else(|| Facts::unknown(self.name.clone()));
-        facts.logic(&Features { quantifiers, ..features })
+        self.profile.logic(&Features { quantifiers, ..features })
     }
 
     /// What is said first.
     pub(super) fn preamble(&self, logic: &str, options: &Options) -> String {
-        let profile = self.profile.as_deref();
-        let mut text = String::new();
-        for command in self.setup() {
-            text += &command;
-            text.push('\n');
-        }
-        let seed = profile.and_then(|profile| profile.seed.as_ref()).filter(|_| options.seed != 0);
-        if let Some(option) = seed {
+        let Profile { setup, seed, .. } = &*self.profile;
+        let mut text: String = setup.iter().flat_map(|command| [command.as_str(), "\n"]).collect();
+        if let Some(option) = seed.as_ref().filter(|_| options.seed != 0) {
             text += &format!("(set-option {option} {})\n", options.seed % (1 << 31));
         }
         text += &format!("(set-logic {logic})\n");
@@ -136,7 +128,7 @@ impl Dialogue {
         text: &mut Vec<u8>,
     ) -> std::io::Result<()> {
         let terms = &script.terms;
-        let push = self.program.profile.as_ref().is_some_and(|p| p.assumptions == Assumptions::Push);
+        let push = self.program.profile.assumptions == Assumptions::Push;
         if assumptions.is_empty() || self.program.one_shot || push {
             // What is defined within the push would be forgotten by the pop.
             for &t in assumptions.iter().filter(|_| push) {
@@ -283,7 +275,7 @@ impl Session for Dialogue {
             Some(running) if self.has_model => running,
             other => {
                 self.running = other;
-                return Err(Error::NoModel { name: self.program.name.clone() });
+                return Err(Error::NoModel { name: self.program.profile.name.clone() });
             }
         };
         let values = self.known_values(&mut running, script, symbols)?;
@@ -292,7 +284,7 @@ impl Session for Dialogue {
     }
 
     fn identity(&self) -> Identity {
-        Identity { name: self.program.name.clone(), version: self.program.version.get() }
+        Identity { name: self.program.profile.name.clone(), version: self.program.version.get() }
     }
 
     fn size(&self) -> QuerySize {

@@ -11,7 +11,7 @@ use super::version;
 use crate::embedded;
 
 /// A solver, found or not.
-#[derive(Clone, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct Found {
     /// What it is called here.
     pub name: String,
@@ -100,12 +100,9 @@ fn embedded(name: &'static str) -> Option<Found> {
         name: name.to_owned(),
         path,
         version,
-        tried: Vec::new(),
         abilities,
-        faults: Vec::new(),
         hint,
-        install: Install::default(),
-        origin: None,
         is_embedded: true,
+        ..Found::default()
     })
 }

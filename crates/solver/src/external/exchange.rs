@@ -41,10 +41,10 @@ impl Exchange {
         let what = || format!("cannot start {}", program.path.display());
         let process = process.map_err(|source| Error::Io { what: what(), source })?;
         let transcript = match &options.queries {
-            Some(directory) => Some(Transcript::create(directory, &program.name, options.status)?),
+            Some(directory) => Some(Transcript::create(directory, &program.profile.name, options.status)?),
             None => None,
         };
-        Ok(Exchange { name: program.name.clone(), process, transcript, lost: false })
+        Ok(Exchange { name: program.profile.name.clone(), process, transcript, lost: false })
     }
 
     /// Keeps what the process gets in another way than by [`Exchange::send`].

@@ -30,7 +30,6 @@ pub use catalog::{Catalog, ConfigError};
 pub(crate) use catalog::{demand_at_most, profile, split_list};
 pub(crate) use discover::for_arithmetic;
 pub use discover::{Found, discover};
-pub use facts::Facts;
 pub use model::{PrintedModel, PrintedModelError};
 pub use process::end_with_parent;
 pub use profile::{Install, Profile};

@@ -131,7 +131,7 @@ impl Session for OneShot {
 
     fn values(&mut self, script: &Script, symbols: &[Term]) -> Result<Vec<Value>, Error> {
         let model = self.model.as_ref();
-        let model = model.ok_or_else(|| Error::NoModel { name: self.program.name.clone() })?;
+        let model = model.ok_or_else(|| Error::NoModel { name: self.program.profile.name.clone() })?;
         let value = |t: &Term| {
             let known = model.get(&t.positive()).copied();
             known.unwrap_or_else(|| Value::default_of(script.terms.sort(*t)))
@@ -142,7 +142,7 @@ impl Session for OneShot {
     }
 
     fn identity(&self) -> Identity {
-        Identity { name: self.program.name.clone(), version: self.program.version.get() }
+        Identity { name: self.program.profile.name.clone(), version: self.program.version.get() }
     }
 
     fn size(&self) -> QuerySize {

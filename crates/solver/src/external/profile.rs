@@ -110,6 +110,29 @@ impl fmt::Display for Install {
 }
 
 impl Profile {
+    /// What a solver is like if nothing is said but its name.
+    pub(crate) fn plain(name: &str) -> Profile {
+        let setup = ["(set-option :print-success false)", "(set-option :produce-models true)"];
+        Profile {
+            name: name.to_owned(),
+            aliases: Vec::new(),
+            program: String::new(),
+            arguments: Vec::new(),
+            one_shot: None,
+            incremental: true,
+            assumptions: Assumptions::Check,
+            setup: setup.map(str::to_owned).to_vec(),
+            logic: None,
+            seed: None,
+            theories: None,
+            quantifiers: Quantifiers::Any,
+            version: vec!["--version".to_owned()],
+            tells_version: false,
+            install: Install::default(),
+            origin: None,
+        }
+    }
+
     /// What it is called.
     #[must_use]
     pub fn name(&self) -> &str {

@@ -13,14 +13,13 @@ use crate::session::{Options, Quantifiers};
 
 /// A program with its arguments.
 pub(super) struct Program {
-    pub(super) name: String,
     pub(super) version: Version,
     pub(super) path: PathBuf,
     pub(super) arguments: Vec<String>,
     /// A process answers one check; the next check starts a new one.
     pub(super) one_shot: bool,
     /// What is known of it.
-    pub(super) profile: Option<Arc<Profile>>,
+    pub(super) profile: Arc<Profile>,
 }
 
 impl Program {
@@ -34,12 +33,11 @@ impl Program {
             !profile.incremental || !options.incremental || options.quantifiers() > Quantifiers::None;
         let one_shot = profile.one_shot.as_ref().filter(|_| one_shot);
         Ok(Program {
-            name: profile.name.clone(),
             version: Version::of(&path, &profile.version),
             path,
             arguments: one_shot.unwrap_or(&profile.arguments).clone(),
             one_shot: one_shot.is_some() || !profile.incremental,
-            profile: Some(Arc::clone(profile)),
+            profile: Arc::clone(profile),
         })
     }
 
@@ -59,7 +57,13 @@ impl Program {
         let arguments: Vec<String> = words.collect();
         let one_shot = arguments.iter().any(|argument| argument.contains(FILE));
         // A command need not know `--version`: what it is stays unknown.
-        Ok(Program { name, version: Version::none(), path, arguments, one_shot, profile: None })
+        Ok(Program {
+            version: Version::none(),
+            path,
+            arguments,
+            one_shot,
+            profile: Arc::new(Profile::plain(&name)),
+        })
     }
 
     /// Whether the query comes in a file.
@@ -69,14 +73,7 @@ impl Program {
 
     /// Whether to ask for the version in the dialogue.
     pub(super) fn is_to_tell_version(&self) -> bool {
-        !self.version.is_known() && self.profile.as_ref().is_some_and(|profile| profile.tells_version)
-    }
-
-    /// The commands that come first.
-    pub(super) fn setup(&self) -> Vec<String> {
-        let usual =
-            || ["(set-option :print-success false)", "(set-option :produce-models true)"].map(str::to_owned);
-        self.profile.as_ref().map_or_else(|| usual().to_vec(), |profile| profile.setup.clone())
+        !self.version.is_known() && self.profile.tells_version
     }
 }
 
