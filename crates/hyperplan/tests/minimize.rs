@@ -192,7 +192,7 @@ fn ranges_that_are_none() {
 #[test]
 fn no_minimum_is_claimed_when_time_runs_out() {
     let name = "case-studies/ar-60.hp";
-    let run = hyperplan(&["solve", name, "--minimize", "T=95..120", "--timeout", "0.3", "--format", "json"]);
+    let run = hyperplan(&["solve", name, "--minimize", "T=95..120", "--timeout", "0.03", "--format", "json"]);
     assert_eq!(run.status, 3, "{}", run.stderr);
     let answer = &run.json()[0];
     assert_eq!(answer["reason"], "timeout");

@@ -176,3 +176,46 @@ fn a_dialogue_is_written_as_it_was_led() {
     let error = emit(&problem, &problem.objectives[0], &config).err();
     assert!(matches!(error, Some(Error::Unsupported(Unsupported::Dialogue))));
 }
+
+/// An objective whose expression is nested this deep through definitions, each nested as deep as half of the parser's limit.
+fn nested(open: &str, close: &str, base: &str, levels: usize, objective: &str) -> Problem {
+    let (mut text, mut inner, mut left, mut number) = (ROOMS.to_owned(), base.to_owned(), levels, 0);
+    while left > 0 {
+        let here = left.min(240);
+        text += &format!("define d{number}(p) = {}{inner}{};\n", open.repeat(here), close.repeat(here));
+        (inner, left, number) = (format!("d{number}(p)"), left - here, number + 1);
+    }
+    text += &format!("objective o within 2 {{ exists p. {} }}", objective.replace("NESTED", &inner));
+    let lowered = read(&mut SourceMap::new(), "test.hp", &text, &NoFiles, &Overrides::none());
+    assert!(!lowered.has_errors(), "{:?}", lowered.diagnostics);
+    lowered.problem
+}
+
+/// What recurses, recurses over nesting: three quarters of the stack of a thread, at most, for the deepest there is.
+#[test]
+fn the_deepest_nesting_gets_along_with_the_stack_of_a_thread() {
+    let problems = [
+        ("!(", ")", "goal[p]", 980, "NESTED"),
+        ("(1 + ", ")", "x[p]", 980, "NESTED > 0"),
+        ("(if x[p] > 1 then ", " else 0)", "x[p]", 980, "NESTED > 0"),
+        ("(if ", " then goal[p] else start[p])", "goal[p]", 980, "NESTED"),
+        ("(goal[p] -> ", ")", "goal[p]", 980, "NESTED"),
+        ("(goal[p] U (start[p] | ", "))", "goal[p]", 490, "NESTED"),
+    ];
+    for (open, close, base, levels, objective) in problems {
+        let all = || {
+            let problem = nested(open, close, base, levels, objective);
+            for quantifiers in [Quantifiers::Auto, Quantifiers::Cegis] {
+                for states in [None, Some(States::Bitvec)] {
+                    let config = Config { quantifiers, states, ..config() };
+                    let outcome = solve(&problem, &problem.objectives[0], &config).expect("it is supported");
+                    assert_ne!(outcome.verdict, Verdict::Unknown);
+                }
+            }
+        };
+        std::thread::scope(|scope| {
+            let small = std::thread::Builder::new().stack_size(3 << 19).spawn_scoped(scope, all);
+            small.expect("it starts").join().expect("it does not panic");
+        });
+    }
+}

@@ -101,6 +101,7 @@ pub(crate) fn typed<C: Context>(
     result
 }
 
+/// Every level of an expression recurses through here. Where `inline(never)` stands, it keeps that frame small.
 fn typed_inner<C: Context>(cx: &mut C, e: &ast::Expr, hint: Option<&EnumType>) -> Option<Typed<C::Leaf>> {
     match &e.kind {
         ExprKind::Bool(b) => Some(Typed::Bool(Expr::Const(Value::Bool(*b)))),
@@ -198,12 +199,14 @@ pub(crate) fn mismatch<C: Context, T>(
     cx.error(Diagnostic::error("type-mismatch", span, message))
 }
 
+#[inline(never)]
 fn truths<C: Context>(cx: &mut C, es: &[ast::Expr]) -> Option<Vec<Expr<C::Leaf>>> {
     // All of them are typed before the first failure counts: one run reports all mistakes.
     let typed: Vec<_> = es.iter().map(|e| truth(cx, e)).collect();
     typed.into_iter().collect()
 }
 
+#[inline(never)]
 fn both<C: Context>(
     cx: &mut C,
     a: &ast::Expr,
@@ -214,6 +217,7 @@ fn both<C: Context>(
     a.zip(b).map(|(a, b)| Typed::Bool(make(a, b)))
 }
 
+#[inline(never)]
 fn number<C: Context>(cx: &mut C, digits: &str, span: Span) -> Option<Typed<C::Leaf>> {
     let number = match digits.split_once('.') {
         Some(_) => fractions::decimal(digits).map(Typed::real),
@@ -224,6 +228,7 @@ fn number<C: Context>(cx: &mut C, digits: &str, span: Span) -> Option<Typed<C::L
     })
 }
 
+#[inline(never)]
 fn named<C: Context>(cx: &mut C, name: &str, span: Span, hint: Option<&EnumType>) -> Option<Typed<C::Leaf>> {
     let value = hint.and_then(|values| Some((values.iter().position(|v| v == name)?, values)));
     let meant = cx.resolve(name);
@@ -263,6 +268,7 @@ fn no_such_value(name: &str, values: &EnumType, span: Span) -> Diagnostic {
 }
 
 /// A name in quotes: always a value of the enumeration that is expected.
+#[inline(never)]
 fn quoted<C: Context>(cx: &mut C, name: &str, span: Span, hint: Option<&EnumType>) -> Option<Typed<C::Leaf>> {
     let Some(values) = hint else {
         let message =
@@ -308,6 +314,7 @@ fn operands<C: Context>(
     left.zip(right)
 }
 
+#[inline(never)]
 fn compare<C: Context>(
     cx: &mut C,
     op: CompareOp,
@@ -393,6 +400,7 @@ fn as_real<L>(number: Typed<L>) -> Option<Expr<L>> {
     }
 }
 
+#[inline(never)]
 fn negated<C: Context>(cx: &mut C, a: &ast::Expr, span: Span) -> Option<Typed<C::Leaf>> {
     let a = numeric(cx, a)?;
     minus(a).or_else(|| overflow(cx, span)).map(Number::typed)
@@ -405,6 +413,7 @@ fn minus<L>(number: Number<L>) -> Option<Number<L>> {
     })
 }
 
+#[inline(never)]
 fn sum<C: Context>(cx: &mut C, terms: &[(bool, ast::Expr)], span: Span) -> Option<Typed<C::Leaf>> {
     let parts: Vec<_> = terms.iter().map(|(minus, term)| Some((*minus, numeric(cx, term)?))).collect();
     let parts = parts.into_iter().collect::<Option<Vec<_>>>()?;
@@ -423,6 +432,7 @@ fn added<L>(parts: Vec<(bool, Number<L>)>) -> Option<Number<L>> {
     typed::sum(parts.into_iter().map(integer).collect::<Option<_>>()?).map(Number::Int)
 }
 
+#[inline(never)]
 fn arith<C: Context>(
     cx: &mut C,
     op: ArithOp,
@@ -493,6 +503,7 @@ fn known_real<L>(e: &Expr<L>) -> Option<Rational> {
     }
 }
 
+#[inline(never)]
 fn choice<C: Context>(
     cx: &mut C,
     condition: &ast::Expr,

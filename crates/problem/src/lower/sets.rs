@@ -12,6 +12,7 @@ use std::sync::Arc;
 const FEW: usize = 8;
 
 /// `element in set`
+#[inline(never)]
 pub(crate) fn membership<C: Context>(
     cx: &mut C,
     element: &ast::Expr,
