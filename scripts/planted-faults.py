@@ -1,85 +1,150 @@
 #!/usr/bin/env python3
-"""Plants faults in the encoder and the search, one at a time, and expects the differential tests to catch each.
+"""Plants the faults of scripts/faults.toml, one at a time, and expects the tests to catch each.
 
-Works on a copy of the tree in a temporary directory, and builds there unless CARGO_TARGET_DIR says otherwise.
-Usage: scripts/planted-faults.py [NAME...]
+Works on a copy of the tree in target/planted-faults, which stays for the next time. A fault is found by its function, so
+that code may move: one that applies no more, or in two places, is an error. Ends with 1 if a fault was missed.
 """
 
+import argparse
 import os
 import pathlib
+import random
+import re
+import shlex
 import shutil
 import subprocess
 import sys
-import tempfile
+import time
+import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-
-# name, file, text, replacement
-FAULTS = [
-    ("horizon-one-short", "crates/horizon/src/lib.rs",
-     "steps: atom.and_then(|atom| tight.time[atom]),",
-     "steps: atom.and_then(|atom| tight.time[atom]).map(|t| t.saturating_sub(1)),"),
-    ("no-path-guard", "crates/plan/src/cegis.rs",
-     "self.query.script.clause(&[!game.guard, formula]);",
-     "self.query.script.clause(&[formula]);"),
-    ("no-path-guard-in-expansion", "crates/plan/src/direct.rs",
-     "direct.query.script.clause(&[!guard, formula]);",
-     "direct.query.script.clause(&[formula]);"),
-    ("dead-ends-count-as-paths", "crates/encode/src/reach.rs",
-     "Mode::Bounded => rank == LIVE,",
-     "Mode::Bounded => rank > 0,"),
-    ("within-forgets-what-follows", "crates/encode/src/reach.rs",
-     "Mode::Within(steps) => rank >= steps.saturating_sub(time),",
-     "Mode::Within(_) => true,"),
-    ("strong-next-is-weak", "crates/encode/src/unroll.rs",
-     "if matches!(&formula.nodes[id], Node::WeakNext(_)) { Term::TRUE } else { Term::FALSE }",
-     "Term::TRUE"),
-    ("window-one-short", "crates/encode/src/unroll.rs",
-     "let unclipped = interval.hi.map(|hi| time.saturating_add(hi));",
-     "let unclipped = interval.hi.map(|hi| time.saturating_add(hi.saturating_sub(1)).max(time + interval.lo));"),
-    ("no-backward-clauses", "crates/encode/src/explicit.rs",
-     "clause.extend(before.get(&(state, letter)).into_iter().flatten());\n            script.clause(&clause);",
-     "clause.extend(before.get(&(state, letter)).into_iter().flatten());"),
-    ("sweep-forgets-a-condition", "crates/encode/src/sweep.rs",
-     "way.push(term.negate_if(!holds));",
-     "if holds { way.push(term); }"),
-    ("first-action-is-free", "crates/encode/src/atom.rs",
-     "if self.time == 0 || p == q {",
-     "if self.time <= 1 || p == q {"),
-]
+COPY = ROOT / "target" / "planted-faults" / "tree"
+# A test that takes longer than this hangs: that is noticed too.
+PATIENCE = 300
 
 
-def catches(name, file, old, new, work):
-    """Whether the tests fail with the fault in place."""
-    path = work / file
-    text = path.read_text()
-    if old not in text:
-        sys.exit(f"{name}: the text to replace is no longer in {file}")
-    path.write_text(text.replace(old, new, 1))
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    parser.add_argument("names", nargs="*", metavar="NAME", help="only these")
+    parser.add_argument("--sample", type=int, metavar="N", help="only N of them, at random")
+    parser.add_argument("--seed", type=int, default=0, help="which N [0]")
+    parser.add_argument("--list", action="store_true", help="say where each applies, and plant none")
+    arguments = parser.parse_args()
+    table = tomllib.loads((ROOT / "scripts" / "faults.toml").read_text())
+    faults = table["fault"]
+    unknown = set(arguments.names) - {fault["name"] for fault in faults}
+    if unknown:
+        sys.exit(f"no fault is called {', '.join(sorted(unknown))}")
+    sources = {path: path.read_text() for path in sorted(ROOT.glob("crates/*/src/**/*.rs"))}
+    planted = {fault["name"]: plant(fault, sources) for fault in faults}
+    wrong = [f"{name}: {text}" for name, text in planted.items() if isinstance(text, str)]
+    if wrong:
+        sys.exit("\n".join(wrong))
+    if arguments.list:
+        for name, (path, line, _) in planted.items():
+            print(f"{name}: {path.relative_to(ROOT)}:{line}")
+        return
+    chosen = [fault for fault in faults if not arguments.names or fault["name"] in arguments.names]
+    chosen = [fault for fault in chosen if is_possible(fault)]
+    if arguments.sample is not None:
+        chosen = random.Random(arguments.seed).sample(chosen, min(arguments.sample, len(chosen)))
+    refresh()
+    commands = {f["name"]: ["cargo", "test", "--quiet", *shlex.split(table["tests"][f["test"]])] for f in chosen}
+    for words in {tuple(words) for words in commands.values()}:
+        passed, output = run(words)
+        if not passed:
+            sys.exit(f"{output}\nfails without any fault: {shlex.join(words)}")
+    missed = [fault["name"] for fault in chosen if not caught(fault["name"], *planted[fault["name"]], commands)]
+    print(f"{len(chosen) - len(missed)} of {len(chosen)} faults are caught")
+    if missed:
+        sys.exit(f"missed: {', '.join(missed)}")
+
+
+def is_possible(fault: dict) -> bool:
+    """Whether the programs that it takes to notice it are there."""
+    program = fault.get("needs")
+    there = program is None or shutil.which(program) is not None
+    if not there:
+        if os.environ.get("HYPERPLAN_REQUIRE_SOLVERS") == "1":
+            sys.exit(f"{fault['name']}: {program} is missing")
+        print(f"{fault['name']}: {program} is missing: skipped")
+    return there
+
+
+def plant(fault: dict, sources: dict) -> tuple | str:
+    """The file, the line and the file's text with the fault; or what is wrong."""
+    words = fault["text"].split()
+    pattern = re.compile(r"\s+".join(re.escape(word) for word in words))
+    found = []
+    functions = 0
+    for path, text in sources.items():
+        if not str(path).endswith(fault.get("file", "")):
+            continue
+        for start, end in bodies(text, fault["in"]):
+            functions += 1
+            found += [(path, text, start + match.start(), start + match.end()) for match in pattern.finditer(text[start:end])]
+    if len(found) == 1:
+        path, text, start, end = found[0]
+        return path, text.count("\n", 0, start) + 1, text[:start] + fault["instead"] + text[end:]
+    if not functions:
+        return f"there is no function {fault['in']} in a file {fault.get('file', '')}: bring scripts/faults.toml up to date"
+    return f"applies {len(found)} times in {fault['in']}: bring scripts/faults.toml up to date"
+
+
+def bodies(text: str, name: str):
+    """Where functions of that name begin and end, as rustfmt sets them."""
+    for match in re.finditer(rf"^( *)(?:pub(?:\([a-z]+\))? )?fn {name}\b", text, re.MULTILINE):
+        end = text.find(f"\n{match[1]}}}\n", match.start())
+        yield match.start(), end if end >= 0 else len(text)
+
+
+def refresh() -> None:
+    """Makes the copy equal to the tree; what has not changed keeps its time, so that it is not compiled again."""
+    listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"], cwd=ROOT,
+                            check=True, stdout=subprocess.PIPE, text=True).stdout.split("\0")
+    wanted = {pathlib.Path(name) for name in listed if name and (ROOT / name).is_file()}
+    for path in [path for path in COPY.rglob("*") if path.is_file() and path.relative_to(COPY) not in wanted]:
+        path.unlink()
+        # A folder without files would still be a crate to cargo.
+        for folder in path.parents:
+            if folder == COPY or any(folder.iterdir()):
+                break
+            folder.rmdir()
+    for name in wanted:
+        source, target = ROOT / name, COPY / name
+        if not target.exists() or target.read_bytes() != source.read_bytes():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(source, target)
+
+
+def run(words, name: str = "the tree") -> tuple[bool, str]:
+    """Whether a test passes, and what it says."""
+    environment = {"CARGO_TARGET_DIR": str(ROOT / "target"), **os.environ, "RUST_BACKTRACE": "0",
+                   "HYPERPLAN_SHRINK_SECONDS": "0"}
+    options = {"cwd": COPY, "env": environment, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    own = words.index("--") if "--" in words else len(words)
+    built = subprocess.run([*words[:own], "--no-run"], **options)
+    if built.returncode != 0:
+        sys.exit(f"{built.stdout}\n{name}: does not compile")
     try:
-        environment = {"CARGO_TARGET_DIR": str(work / "target"), **os.environ}
-        run = subprocess.run(
-            ["cargo", "test", "--quiet", "-p", "hyperplan-tests", "--test", "differential", "the_embedded"],
-            cwd=work, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        done = subprocess.run(words, timeout=PATIENCE, **options)
+    except subprocess.TimeoutExpired:
+        return False, f"no end after {PATIENCE} s"
+    return done.returncode == 0, done.stdout
+
+
+def caught(name: str, path: pathlib.Path, line: int, text: str, commands: dict) -> bool:
+    """Whether the test fails with the fault in place."""
+    target = COPY / path.relative_to(ROOT)
+    sound = target.read_text()
+    start = time.monotonic()
+    target.write_text(text)
+    try:
+        passed, _ = run(commands[name], name)
     finally:
-        path.write_text(text)
-    if run.returncode != 0 and "could not compile" in run.stdout:
-        sys.exit(f"{name}: does not compile\n{run.stdout}")
-    return run.returncode != 0
-
-
-def main():
-    chosen = [f for f in FAULTS if not sys.argv[1:] or f[0] in sys.argv[1:]]
-    missed = []
-    with tempfile.TemporaryDirectory() as folder:
-        work = pathlib.Path(folder) / "tree"
-        shutil.copytree(ROOT, work, ignore=shutil.ignore_patterns("target", ".git"))
-        for name, file, old, new in chosen:
-            caught = catches(name, file, old, new, work)
-            print(f"{name}: {'caught' if caught else 'MISSED'}", flush=True)
-            if not caught:
-                missed.append(name)
-    sys.exit(f"missed: {', '.join(missed)}" if missed else 0)
+        target.write_text(sound)
+    print(f"{name}: {'MISSED' if passed else 'caught'}, {time.monotonic() - start:.0f} s", flush=True)
+    return not passed
 
 
 if __name__ == "__main__":

@@ -1,14 +1,15 @@
 //! Smaller problems that show the same fault.
 
 use crate::model::{Formula, Problem, Rule};
+use crate::number;
 use std::time::{Duration, Instant};
 
-/// How long to look for one.
-const PATIENCE: Duration = Duration::from_secs(10);
+/// How many seconds to look for one, unless `HYPERPLAN_SHRINK_SECONDS` says otherwise.
+const PATIENCE: u64 = 10;
 
 /// A problem that fails, and does so no more whatever single thing is left out of it (if there was time to find out).
 pub fn shrunk(mut problem: Problem, fails: impl Fn(&Problem) -> bool) -> Problem {
-    let end = Instant::now() + PATIENCE;
+    let end = Instant::now() + Duration::from_secs(number("HYPERPLAN_SHRINK_SECONDS", PATIENCE));
     let in_time = |_: &Problem| Instant::now() < end;
     while let Some(smaller) = smaller(&problem).into_iter().take_while(in_time).find(&fails) {
         problem = smaller;
