@@ -30,7 +30,7 @@ const MEMBERS: [&str; 5] = ["states", "actions", "initial", "transitions", "labe
 /// The system that a graph file describes, as far as it can be read.
 pub(super) fn file(ast: &ast::System, file: &Text, env: &mut Env) -> Base {
     let nothing = Base { poisoned: true, ..Base::default() };
-    let Some(text) = load_text(&file.text, file.span, env) else { return nothing };
+    let Some(text) = load_text(file, "a graph", env) else { return nothing };
     let text: Arc<str> = text.into();
     let source = env.sources.add(file.text.clone(), text.clone());
     if u32::try_from(text.len()).is_err() {
@@ -195,7 +195,7 @@ impl Reader<'_, '_> {
     fn name(&mut self, piece: Piece<'_>, what: &str) -> Option<String> {
         let name = match piece.kind() {
             Kind::Text => piece.text(),
-            Kind::Number => piece.integer().map(|n| n.to_string()),
+            Kind::Number => piece.digits().map(str::to_owned),
             _ => None,
         };
         match name {
@@ -209,7 +209,10 @@ impl Reader<'_, '_> {
                 None
             }
             None => {
-                let found = piece.describe();
+                let found = match piece.kind() {
+                    Kind::Number => format!("`{0}`; as a name it is written \"{0}\"", piece.raw()),
+                    _ => piece.describe().to_owned(),
+                };
                 let an = if what == "action" { "an" } else { "a" };
                 self.bad(piece.start(), format!("{an} {what} is a string or an integer, not {found}"));
                 None

@@ -87,9 +87,15 @@ impl<'t> Piece<'t> {
         serde_json::from_str(self.raw).ok()
     }
 
-    /// The value of an integer.
-    pub(super) fn integer(self) -> Option<i64> {
-        serde_json::from_str(self.raw).ok()
+    /// An integer of any size, as it is written.
+    pub(super) fn digits(self) -> Option<&'t str> {
+        let unsigned = self.raw.strip_prefix('-').unwrap_or(self.raw);
+        (!unsigned.is_empty() && unsigned.bytes().all(|b| b.is_ascii_digit())).then_some(self.raw)
+    }
+
+    /// The text of the value.
+    pub(super) fn raw(self) -> &'t str {
+        self.raw
     }
 }
 

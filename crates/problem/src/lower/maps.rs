@@ -4,6 +4,7 @@ use super::base::Base;
 use super::consts::duplicate;
 use super::diagnostics::suggest;
 use super::env::Env;
+use super::grid::picture::is_picture;
 use super::grid::{self, Format, GridMap, Legend, MOVES, Meaning, Move, Row, Rule, Rules};
 use super::ros;
 use hyperplan_syntax::ast::{self, Ident, SystemItem, Text};
@@ -27,18 +28,24 @@ pub(super) fn file(ast: &ast::System, file: &Text, env: &mut Env) -> Base {
 }
 
 fn read_file(ast: &ast::System, file: &Text, env: &mut Env) -> Option<GridMap> {
-    let text = load_text(&file.text, file.span, env)?;
+    let text = load_text(file, "a map", env)?;
     let lower = file.text.to_lowercase();
+    if let Some((what, instead)) =
+        OTHERS.iter().find_map(|(end, what, instead)| lower.ends_with(end).then_some((what, instead)))
+    {
+        let message = format!("`{}` is {what}, no map", file.text);
+        env.diagnostics.push(Diagnostic::error("bad-map", file.span, message).with_help(*instead));
+        return None;
+    }
+    let source = env.sources.add(file.text.clone(), text.as_str());
     if lower.ends_with(".yaml") || lower.ends_with(".yml") {
         // Pixels are no letters, but a legend for them is a mistake worth reporting.
         legend(ast, Format::Text, env)?;
-        return ros::read(&file.text, file.span, &text, env);
+        return ros::read(&file.text, file.span, source, &text, env);
     }
-    let source = env.sources.add(file.text.clone(), text.as_str());
     let whole = Span::new(source, 0..text.len().min(1));
     let mut lines = lines(&text, source);
-    let first = lines.first().map_or("", |row| row.text);
-    if first.split_whitespace().next() == Some("type") {
+    if is_moving_ai(&lines) {
         let legend = legend(ast, Format::MovingAi, env)?;
         let rows = moving_ai(&lines, env)?;
         return grid::from_rows(rows, Format::MovingAi, &legend, whole, env.diagnostics);
@@ -54,11 +61,25 @@ fn read_file(ast: &ast::System, file: &Text, env: &mut Env) -> Option<GridMap> {
     grid::from_rows(&lines, Format::Text, &legend, whole, env.diagnostics)
 }
 
-/// The text of a file that the problem names at `span`.
-pub(super) fn load_text(path: &str, span: Span, env: &mut Env) -> Option<String> {
+/// Files that people name where a map is wanted: how they end, what they are, and what to give instead.
+const OTHERS: [(&str, &str, &str); 2] = [
+    (".scen", "a list of scenarios", "give the map that it is for, and cells of a scenario as labels"),
+    (".json", "a graph", "write `graph(...)` in place of `grid(...)`"),
+];
+
+/// The text of a file that the problem names, where `wanted` is expected; without a byte order mark.
+pub(super) fn load_text(file: &Text, wanted: &str, env: &mut Env) -> Option<String> {
+    let (path, span) = (&file.text, file.span);
     let diagnostic = match env.loader.load(path) {
+        Ok(bytes) if is_picture(&bytes) => {
+            let message = format!("`{path}` is a picture, not {wanted}");
+            let help = "a map of ROS is given by the YAML file that names its picture: `grid(\"map.yaml\")`";
+            Diagnostic::error("not-text", span, message).with_help(help)
+        }
         Ok(bytes) => match String::from_utf8(bytes) {
-            Ok(text) if !text.contains('\0') => return Some(text),
+            Ok(text) if !text.contains('\0') => {
+                return Some(text.strip_prefix('\u{feff}').map_or_else(|| text.clone(), str::to_owned));
+            }
             _ => Diagnostic::error("not-text", span, format!("`{path}` is not a text file")),
         },
         Err(reason) => {
@@ -67,6 +88,23 @@ pub(super) fn load_text(path: &str, span: Span, env: &mut Env) -> Option<String>
         }
     };
     env.diagnostics.refuse(diagnostic)
+}
+
+/// Whether lines begin with a header of the Moving AI Lab: it comes in several spellings.
+fn is_moving_ai(lines: &[Row<'_>]) -> bool {
+    let first = lines.iter().map(header).find(|words| !words.is_empty());
+    match first.as_deref() {
+        Some([word, ..]) => ["type", "height", "width"].contains(&word.as_str()),
+        _ => false,
+    }
+}
+
+/// The words of a header's line, in small letters; none of a note.
+fn header(line: &Row<'_>) -> Vec<String> {
+    match line.text.trim_start().starts_with("# ") {
+        true => Vec::new(),
+        false => line.text.split_whitespace().map(str::to_lowercase).collect(),
+    }
 }
 
 /// The lines of a text with their places, without line ends.
@@ -89,7 +127,8 @@ fn moving_ai<'a>(lines: &'a [Row<'a>], env: &mut Env) -> Option<&'a [Row<'a>]> {
     };
     let (mut height, mut width) = (None, None);
     for (index, line) in lines.iter().enumerate() {
-        let words: Vec<&str> = line.text.split_whitespace().collect();
+        let words = header(line);
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
         match words.as_slice() {
             [] | ["type", _] => {}
             ["height", n] if n.parse::<usize>().is_ok() => height = n.parse().ok(),

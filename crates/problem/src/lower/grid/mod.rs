@@ -1,7 +1,9 @@
 //! Maps: reading them, and turning their rules into ordinary transition clauses.
 
 mod moves;
-pub(crate) mod pgm;
+mod pgm;
+pub(crate) mod picture;
+mod png;
 mod rows;
 mod system;
 

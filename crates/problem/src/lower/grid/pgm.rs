@@ -1,29 +1,11 @@
-//! Gray pictures: PGM, plain (`P2`) and raw (`P5`).
+//! PGM pictures, plain (`P2`) and raw (`P5`), read whole: what is left over or missing shifts pixels, or was never
+//! meant to be one, so it is refused. Libraries for the format leave it alone.
 
-/// A gray picture; row 0 is the top one.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Picture {
-    pub(crate) width: u32,
-    pub(crate) height: u32,
-    /// The shade of white.
-    pub(crate) white: u16,
-    shades: Vec<u16>,
-}
+use super::picture::Picture;
 
-impl Picture {
-    /// The shade of a pixel inside the picture.
-    pub(crate) fn at(&self, x: u32, row: u32) -> u16 {
-        self.shades[row as usize * self.width as usize + x as usize]
-    }
-}
-
-/// Reads a picture of at most so many pixels.
-pub(crate) fn read(bytes: &[u8], most: usize) -> Result<Picture, String> {
-    let raw = match bytes.get(..2) {
-        Some(b"P5") => true,
-        Some(b"P2") => false,
-        _ => return Err("only PGM pictures (P2, P5) are supported".into()),
-    };
+/// Reads a picture of at most so many pixels; the first two bytes have said that it is one.
+pub(super) fn read(bytes: &[u8], most: usize) -> Result<Picture, String> {
+    let raw = bytes.starts_with(b"P5");
     let mut reader = Reader { rest: &bytes[2..] };
     let (width, height) = (reader.number()?, reader.number()?);
     let white = u16::try_from(reader.number()?).map_err(|_| "the greatest shade is above 65535")?;
@@ -35,6 +17,7 @@ pub(crate) fn read(bytes: &[u8], most: usize) -> Result<Picture, String> {
         return Err(format!("the picture has more than {most} pixels"));
     }
     let shades = if raw { reader.raw(pixels, white)? } else { reader.plain(pixels)? };
+    reader.end(raw)?;
     if shades.iter().any(|shade| *shade > white) {
         return Err(format!("a shade is above the greatest one, {white}"));
     }
@@ -46,8 +29,8 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// The next number, after white space and comments.
-    fn number(&mut self) -> Result<u32, String> {
+    /// Passes white space and comments.
+    fn blanks(&mut self) {
         loop {
             match self.rest.first() {
                 Some(b'#') => {
@@ -55,9 +38,14 @@ impl Reader<'_> {
                     self.rest = &self.rest[end..];
                 }
                 Some(b) if b.is_ascii_whitespace() => self.rest = &self.rest[1..],
-                _ => break,
+                _ => return,
             }
         }
+    }
+
+    /// The next number, after white space and comments.
+    fn number(&mut self) -> Result<u32, String> {
+        self.blanks();
         let end = self.rest.iter().position(|b| !b.is_ascii_digit()).unwrap_or(self.rest.len());
         let (digits, rest) = self.rest.split_at(end);
         self.rest = rest;
@@ -72,9 +60,34 @@ impl Reader<'_> {
 
     /// One byte a pixel, or two, the higher first, where white is above 255.
     fn raw(&mut self, pixels: usize, white: u16) -> Result<Vec<u16>, String> {
-        let bytes = if white > 255 { 2 } else { 1 };
-        // A single white space ends the header.
-        let data = self.rest.get(1..=pixels * bytes).ok_or("the picture is cut short")?;
-        Ok(data.chunks(bytes).map(|b| b.iter().fold(0, |shade, b| (shade << 8) | u16::from(*b))).collect())
+        let width = if white > 255 { 2 } else { 1 };
+        let length = pixels * width;
+        // A single white space ends the header. Two, as on systems that end lines so, can only be meant where the
+        // rest has one byte too many for the pixels.
+        let blank = match self.rest {
+            [b'\r', b'\n', rest @ ..] if rest.len() == length => 2,
+            [first, ..] if first.is_ascii_whitespace() => 1,
+            _ => return Err("after the greatest shade comes white space, and then the pixels".into()),
+        };
+        let data = self.rest.get(blank..).unwrap_or_default();
+        let (data, rest) = data.split_at_checked(length).ok_or_else(|| {
+            format!("the picture is cut short: {length} bytes of pixels are due, {} are there", data.len())
+        })?;
+        self.rest = rest;
+        Ok(data.chunks(width).map(|b| b.iter().fold(0, |shade, b| (shade << 8) | u16::from(*b))).collect())
+    }
+
+    /// Nothing but white space may be left, in a raw picture not even that.
+    fn end(&mut self, raw: bool) -> Result<(), String> {
+        if !raw {
+            self.blanks();
+        }
+        match self.rest.len() {
+            0 => Ok(()),
+            left => Err(format!(
+                "{left} bytes are left over after the last pixel, so that it is not clear which bytes are pixels; the \
+                 header must end with the greatest shade and a single white space, without a comment"
+            )),
+        }
     }
 }

@@ -70,9 +70,8 @@ fn items_refine_a_graph() {
 #[test]
 fn every_cut_of_a_graph_file_is_refused_with_a_place() {
     for end in 0..GRAPH.len() {
-        let text: &'static str = GRAPH[..end].to_owned().leak();
-        let files: &'static [(&str, &str)] = vec![("g.json", text)].leak();
-        let (lowered, sources) = lowered_with("system M = graph(\"g.json\");", files, &Overrides::none());
+        let files = [("g.json", &GRAPH[..end])];
+        let (lowered, sources) = lowered_with("system M = graph(\"g.json\");", &files, &Overrides::none());
         let messages = messages(&lowered, &sources);
         assert_eq!(messages.len(), 1, "{messages:?}");
         assert!(messages[0].starts_with("g.json:") && messages[0].contains("bad-json"), "{messages:?}");
@@ -93,8 +92,8 @@ fn nesting_and_odd_strings_do_no_harm() {
         "\u{feff}{}".to_owned(),
         "{\"states\": [1e3, -0, 99999999999999999999]}".to_owned(),
     ] {
-        let files: &'static [(&str, &str)] = vec![("g.json", &*text.leak())].leak();
-        let (lowered, sources) = lowered_with("system M = graph(\"g.json\");", files, &Overrides::none());
+        let files = [("g.json", &*text)];
+        let (lowered, sources) = lowered_with("system M = graph(\"g.json\");", &files, &Overrides::none());
         assert!(lowered.has_errors(), "{:?}", messages(&lowered, &sources));
     }
 }

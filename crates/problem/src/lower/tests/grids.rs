@@ -201,7 +201,7 @@ fn text_files() {
     assert_eq!(system.map.as_ref().expect("a map").obstacles, [(1, 1)]);
 }
 
-fn file_messages(text: &str, files: &'static [(&'static str, &'static str)]) -> Vec<String> {
+fn file_messages(text: &str, files: &[(&str, &str)]) -> Vec<String> {
     let (lowered, sources) = lowered_with(text, files, &Overrides::none());
     messages(&lowered, &sources)
 }
@@ -223,8 +223,8 @@ fn mistakes_in_files_are_shown_there() {
 #[test]
 fn moving_ai_maps() {
     let map = "type octile\nheight 3\nwidth 4\nmap\n..G@\nOTW.\nS...\n";
-    let files: &'static [_] = Box::leak(Box::new([("map.txt", map)]));
-    let problem = ok_with(FILE, files).problem;
+    let files = [("map.txt", map)];
+    let problem = ok_with(FILE, &files).problem;
     let system = problem.systems.first().expect("a system");
     let map = system.map.as_ref().expect("a map");
     assert_eq!((map.width, map.height), (4, 3));
@@ -249,27 +249,174 @@ fn ros_maps() {
     let yaml = "image: \"room.pgm\"\nresolution: 0.05\norigin: [0.0, 0.0, 0.0]\noccupied_thresh: 0.65\n\
                 free_thresh: 0.25\nnegate: 0 # white is free\n";
     let picture = "P2\n# a comment\n3 2\n255\n255 0 255\n255 255 128\n";
-    let files: &'static [_] = Box::leak(Box::new([("maps/room.yaml", yaml), ("maps/room.pgm", picture)]));
+    let files = [("maps/room.yaml", yaml), ("maps/room.pgm", picture)];
     let text = r#"system W = grid("maps/room.yaml") { }"#;
-    let problem = ok_with(text, files).problem;
+    let problem = ok_with(text, &files).problem;
     let map = problem.systems.first().and_then(|s| s.map.clone()).expect("a map");
     // The top picture row is y = 1; gray is unknown, and so an obstacle.
     assert_eq!((map.width, map.height, map.obstacles), (3, 2, vec![(1, 1), (2, 0)]));
-    let raw = crate::lower::grid::pgm::read(b"P5 2 1 255\n\x00\xff", 10).expect("a picture");
+    let raw = crate::lower::grid::picture::read(b"P5 2 1 255\n\x00\xff", 10).expect("a picture");
     assert_eq!((raw.at(0, 0), raw.at(1, 0)), (0, 255));
     for bad in [&b"P5 2 1 255\n\x00"[..], b"P5 2", b"P6 1 1 255\n000", b"P2 1 1 255\n256", b"", b"P2 9 9 9 9"]
     {
-        assert!(crate::lower::grid::pgm::read(bad, 10).is_err());
+        assert!(crate::lower::grid::picture::read(bad, 10).is_err());
     }
+}
+
+/// What the map of a YAML file and a plain picture is, or the messages.
+fn ros(yaml: &str, picture: &str) -> Result<Vec<(u32, u32)>, Vec<String>> {
+    let files = [("room.yaml", yaml), ("room.pgm", picture)];
+    let text = r#"system W = grid("room.yaml") { } objective o { exists p. F[0,1] x[p] == 0 }"#;
+    let (lowered, sources) = lowered_with(text, &files, &Overrides::none());
+    if lowered.has_errors() {
+        return Err(messages(&lowered, &sources));
+    }
+    let problem = lowered.problem;
+    Ok(problem.systems.first().and_then(|s| s.map.clone()).expect("a map").obstacles)
+}
+
+#[test]
+fn ros_settings_in_every_style() {
+    let picture = "P2 3 1 255 255 0 205";
+    let flat = "image: room.pgm\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+    let obstacles = Ok(vec![(1, 0), (2, 0)]);
+    for yaml in [
+        flat.to_owned(),
+        flat.replace('\n', "\r\n"),
+        format!("\u{feff}{flat}"),
+        format!("%YAML 1.2\n---\n# saved\n{flat}..."),
+        "{image: room.pgm, negate: 0, origin: [0, 0, 0.5]}".to_owned(),
+        "\"image\": 'room.pgm' # of the room\n'negate': false\n".to_owned(),
+        "image:\n  room.pgm\nmode: trinary\nnegate: off\n".replace("negate: off\n", ""),
+    ] {
+        assert_eq!(ros(&yaml, picture), obstacles, "{yaml:?}");
+    }
+    assert_eq!(ros("image: room.pgm\nnegate: true", picture), Ok(vec![(0, 0), (2, 0)]));
+    for bad in [
+        "",
+        "room.pgm",
+        "image: [a, b]",
+        "image: ''",
+        "negate: 0",
+        "image: room.pgm\nnegate: 2",
+        "image: room.pgm\nnegate: perhaps",
+        "image: room.pgm\nfree_thresh: 1.5",
+        "image: room.pgm\noccupied_thresh: -0.1",
+        "image: room.pgm\noccupied_thresh: .nan",
+        "image: room.pgm\nfree_thresh: 0.7",
+        "image: room.pgm\nmode: raw",
+        "image: room.pgm\nimage: other.pgm",
+        "image: room.pgm\n  bad: [",
+    ] {
+        let said = ros(bad, picture).expect_err(bad);
+        assert!(said.len() == 1 && said[0].starts_with("room.yaml:"), "{bad:?}: {said:?}");
+    }
+}
+
+#[test]
+fn thresholds_that_free_unknown_cells_are_told() {
+    let files = [("room.yaml", "image: room.pgm\nfree_thresh: 0.25"), ("room.pgm", "P2 2 1 255 255 205")];
+    let said = file_messages(r#"system W = grid("room.yaml") { }"#, &files);
+    assert!(said.iter().any(|message| message.contains("unknown-is-free")), "{said:?}");
+}
+
+/// Whatever the white space and comments of its header: a picture is read pixel by pixel, or refused.
+#[test]
+fn pictures_are_never_shifted() {
+    let pixels: [u8; 6] = *b"\0#5\r\n0";
+    let blanks = [" ", "\n", "\r\n", "\t", "\n# 7 7\n", " # a\r\n", ""];
+    let (mut read, mut refused) = (0, 0);
+    for at in 0..blanks.len().pow(3) {
+        let n = blanks.len();
+        let (a, b, c) = (blanks[at % n], blanks[at / n % n], blanks[at / n / n]);
+        for (extra, cut) in [(0, 0), (1, 0), (0, 1)] {
+            let mut bytes = format!("P5{a}3{b}2{a}255{c}").into_bytes();
+            bytes.extend_from_slice(&pixels[cut..]);
+            bytes.extend(std::iter::repeat_n(b'x', extra));
+            match crate::lower::grid::picture::read(&bytes, 100) {
+                // A line end of two bytes is one white space only where the sizes say so.
+                Ok(picture) if extra == 0 && cut == 0 => {
+                    let shades = pixels.map(u16::from);
+                    assert_eq!(picture.shades, shades, "{a:?} {b:?} {c:?}");
+                    read += 1;
+                }
+                Ok(picture) => {
+                    // One byte less after a line end of two: it was one byte of white space, and a pixel.
+                    assert!(c == "\r\n" && cut == 1 && picture.shades[0] == 10, "{a:?} {b:?} {c:?}");
+                }
+                Err(_) => refused += 1,
+            }
+        }
+    }
+    assert!(read > 50 && refused > 500, "{read} read, {refused} refused");
+}
+
+#[test]
+fn png_pictures() {
+    let encoded = |color, depth, data: &[u8]| {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, 2, 1);
+        encoder.set_color(color);
+        encoder.set_depth(depth);
+        encoder.write_header().and_then(|mut writer| writer.write_image_data(data)).expect("a picture");
+        bytes
+    };
+    let (eight, sixteen) = (png::BitDepth::Eight, png::BitDepth::Sixteen);
+    for (bytes, shades) in [
+        (encoded(png::ColorType::Grayscale, eight, &[0, 205]), [0, 205]),
+        (encoded(png::ColorType::Grayscale, sixteen, &[0, 0, 205, 7]), [0, 205]),
+        (encoded(png::ColorType::Grayscale, png::BitDepth::One, &[0b0100_0000]), [0, 255]),
+        (encoded(png::ColorType::Rgb, eight, &[0, 30, 60, 255, 255, 255]), [30, 255]),
+        (encoded(png::ColorType::Rgba, eight, &[0, 0, 0, 0, 255, 255, 255, 255]), [0, 255]),
+    ] {
+        let picture = crate::lower::grid::picture::read(&bytes, 100).expect("a picture");
+        assert_eq!((picture.width, picture.height, picture.white), (2, 1, 255));
+        assert_eq!(picture.shades, shades);
+        for end in 0..bytes.len() - 12 {
+            assert!(crate::lower::grid::picture::read(&bytes[..end], 100).is_err(), "cut after {end} bytes");
+        }
+        assert!(crate::lower::grid::picture::read(&bytes, 1).is_err());
+    }
+}
+
+#[test]
+fn headers_of_the_moving_ai_lab_in_every_spelling() {
+    for header in [
+        "type octile\nheight 2\nwidth 3\nmap\n",
+        "Type octile\nHEIGHT 2\nwidth 3\nMap\n",
+        "\u{feff}type octile\r\nheight 2\r\nwidth 3\r\nmap\r\n",
+        "\n# a note\ntype octile\nwidth 3\nheight 2\nmap\n",
+        "height 2\nwidth 3\nmap\n",
+    ] {
+        let text = format!("{header}..@\n@.T\n");
+        let files = [("map.txt", text.as_str())];
+        let problem = ok_with(FILE, &files).problem;
+        let map = problem.systems.first().and_then(|s| s.map.clone()).expect("a map");
+        assert_eq!(map.obstacles, [(0, 0), (2, 0), (2, 1)], "{header:?}");
+    }
+}
+
+#[test]
+fn files_of_other_kinds_are_named() {
+    for (name, contents) in [
+        ("a.scen", "version 1\n0 a.map 3 3 0 0 1 1 1.0\n"),
+        ("a.pgm", "P5 1 1 255\n0"),
+        ("a.json", "{\"states\": []}"),
+    ] {
+        let text = format!("system W = grid({name:?}) {{ }}");
+        let said = file_messages(&text, &[(name, contents)]);
+        assert!(said.len() == 1 && said[0].contains(" is a"), "{said:?}");
+    }
+    let said = file_messages("system W = graph(\"a.map\") { }", &[("a.map", "P2 1 1 255 0")]);
+    assert!(said.len() == 1 && said[0].contains("is a picture"), "{said:?}");
 }
 
 #[test]
 fn a_large_map() {
     let map = ["type octile\nheight 512\nwidth 512\nmap\n", &format!("{}\n", ".@".repeat(256)).repeat(512)]
         .concat();
-    let map: &'static str = Box::leak(map.into_boxed_str());
-    let files: &'static [_] = Box::leak(Box::new([("map.txt", map)]));
-    let problem = ok_with(FILE, files).problem;
+    let files = [("map.txt", &*map)];
+    let problem = ok_with(FILE, &files).problem;
     let map = problem.systems.first().and_then(|s| s.map.clone()).expect("a map");
     assert_eq!(map.obstacles.len(), 512 * 256);
 }

@@ -11,7 +11,7 @@ use crate::{Lowered, Overrides, read};
 use hyperplan_syntax::SourceMap;
 
 /// A loader for a few files.
-fn files(files: &'static [(&'static str, &'static str)]) -> impl Fn(&str) -> Result<Vec<u8>, String> {
+fn files(files: &[(&str, &str)]) -> impl Fn(&str) -> Result<Vec<u8>, String> {
     move |path| {
         let found = files.iter().find(|(name, _)| *name == path);
         found.map(|(_, text)| text.as_bytes().to_vec()).ok_or_else(|| "no such file".to_owned())
@@ -22,11 +22,7 @@ fn lowered(text: &str) -> (Lowered, SourceMap) {
     lowered_with(text, &[], &Overrides::none())
 }
 
-fn lowered_with(
-    text: &str,
-    named: &'static [(&'static str, &'static str)],
-    overrides: &Overrides,
-) -> (Lowered, SourceMap) {
+fn lowered_with(text: &str, named: &[(&str, &str)], overrides: &Overrides) -> (Lowered, SourceMap) {
     let mut sources = SourceMap::new();
     let lowered = read(&mut sources, "test.hp", text, &files(named), overrides);
     (lowered, sources)
@@ -37,7 +33,7 @@ fn ok(text: &str) -> Lowered {
     ok_with(text, &[])
 }
 
-fn ok_with(text: &str, named: &'static [(&'static str, &'static str)]) -> Lowered {
+fn ok_with(text: &str, named: &[(&str, &str)]) -> Lowered {
     let (lowered, sources) = lowered_with(text, named, &Overrides::none());
     let messages = messages(&lowered, &sources);
     assert!(messages.is_empty(), "{messages:#?}\n{text}");
