@@ -52,7 +52,7 @@ pub(crate) enum Format {
 /// A problem file and how to read it.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct Problem {
-    /// The problem file (.hp)
+    /// The problem file (.hp); `-` is standard input
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
     /// Replaces the value of a constant
@@ -346,7 +346,7 @@ pub(crate) struct Check {
 pub(crate) struct Verify {
     #[command(flatten)]
     pub(crate) problem: Problem,
-    /// A strategy, as `solve --save` and `solve --format json` write it
+    /// A strategy, as `solve --save` and `solve --format json` write it; `-` is standard input
     #[arg(value_name = "STRATEGY.json", required_unless_present = "model", conflicts_with = "model")]
     pub(crate) strategy: Option<PathBuf>,
     /// What a solver printed for a query that `emit` wrote: its model, by (get-model) or (get-value (...));
@@ -366,7 +366,7 @@ pub(crate) struct Verify {
 pub(crate) struct Plot {
     #[command(flatten)]
     pub(crate) problem: Problem,
-    /// A strategy, as `solve --save` and `solve --format json` write it
+    /// A strategy, as `solve --save` and `solve --format json` write it; `-` is standard input
     #[arg(value_name = "STRATEGY.json")]
     pub(crate) strategy: Option<PathBuf>,
     #[command(flatten)]

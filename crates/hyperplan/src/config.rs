@@ -3,6 +3,7 @@
 use crate::args::{self, ColorWhen};
 use crate::configuration;
 use crate::failure::{Failure, Result};
+use crate::guard;
 use crate::output::check_writable;
 use crate::report::Picture;
 use crate::signals;
@@ -39,7 +40,7 @@ impl Solve {
             cross_check: args.cross_check.as_deref().map(self::solver).transpose()?,
             quantifiers: args.encoding.quantifiers,
             states: args.encoding.states,
-            deadline: deadline(args.encoding.timeout)?,
+            deadline: deadline(args.encoding.timeout, args.memory)?,
             verify: !args.no_verify,
             seed: args.seed,
             memory_mib: args.memory,
@@ -120,8 +121,8 @@ pub(crate) fn author(name: &str) -> Result<String> {
     Ok(name.trim().to_owned())
 }
 
-/// The end of the whole command, by time or by signal.
-pub(crate) fn deadline(timeout: Option<f64>) -> Result<Deadline> {
+/// The end of the whole command, by time, by signal, or by how much this process grows.
+pub(crate) fn deadline(timeout: Option<f64>, memory_mib: Option<u64>) -> Result<Deadline> {
     let deadline = match timeout {
         None => Deadline::never(),
         // Too long to count is as good as no end.
@@ -133,6 +134,7 @@ pub(crate) fn deadline(timeout: Option<f64>) -> Result<Deadline> {
         }
     };
     signals::watch(&deadline.cancel_flag());
+    guard::begin(&deadline, memory_mib);
     Ok(deadline)
 }
 

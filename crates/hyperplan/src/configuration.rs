@@ -1,7 +1,7 @@
 //! Configuration files: where they are. What they say is for the solvers' catalog.
 
 use crate::failure::{Failure, Result};
-use crate::load::read_source;
+use crate::files::read_source;
 use hyperplan_solver::Catalog;
 use std::env;
 use std::path::{Path, PathBuf};

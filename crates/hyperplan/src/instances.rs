@@ -2,7 +2,8 @@
 
 use crate::args;
 use crate::failure::{Failure, Result};
-use crate::load::{Beside, read_bytes, reason};
+use crate::files::{read_bytes, reason};
+use crate::load::Beside;
 use crate::output::Output;
 use crate::report;
 use hyperplan_compare::plan::{Instance, Kind, sha256};

@@ -2,17 +2,14 @@
 
 use crate::args;
 use crate::failure::{Failure, Result};
+use crate::files::{self, read_bytes, read_source, reason};
 use crate::output::Output;
 use crate::report;
 use hyperplan_problem::answer::{StrategyFile, to_strategy};
 use hyperplan_problem::{Loader, Lowered, Objective, Overrides, Problem, Strategy, Value, lower, read};
 use hyperplan_syntax::{SourceMap, Span, ast};
-use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-
-/// The most bytes of a file that are read: far more than any map or strategy has.
-const FILE_LIMIT: u64 = 1 << 30;
 
 /// A problem without errors.
 pub(crate) struct Loaded {
@@ -118,41 +115,6 @@ impl Loader for Beside {
     }
 }
 
-/// The text of a problem file.
-pub(crate) fn read_source(path: &Path) -> Result<String> {
-    let cannot = |why: String| Failure::input(format_args!("cannot read {}: {why}", path.display()));
-    let bytes = read_bytes(path).map_err(|e| cannot(reason(&e)))?;
-    String::from_utf8(bytes).map_err(|error| {
-        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-        if good.contains(&0) {
-            return cannot("it is not a text file".to_owned());
-        }
-        let line = good.iter().filter(|byte| **byte == b'\n').count() + 1;
-        cannot(format!("it is not in UTF-8; the first byte that cannot be read is on line {line}"))
-    })
-}
-
-pub(crate) fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
-    // A directory can be opened on some systems, and then says something less clear.
-    let length = std::fs::metadata(path)?.len();
-    if path.is_dir() {
-        return Err(io::Error::other("it is a directory"));
-    }
-    if length > FILE_LIMIT {
-        return Err(io::Error::other(format!("it has more than {FILE_LIMIT} bytes")));
-    }
-    std::fs::read(path)
-}
-
-/// Why a file cannot be read, in words without the system's error number.
-pub(crate) fn reason(error: &io::Error) -> String {
-    match error.kind() {
-        io::ErrorKind::NotFound => "there is no such file".to_owned(),
-        io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
-        _ => error.to_string(),
-    }
-}
-
 /// A strategy file.
 pub(crate) struct Given {
     /// The file as it was named.
@@ -163,7 +125,7 @@ pub(crate) struct Given {
 impl Given {
     /// Reads a strategy file.
     pub(crate) fn read(path: &Path) -> Result<Given> {
-        let name = path.display().to_string();
+        let name = files::name(path);
         let answers = StrategyFile::read_all(&read_source(path)?)
             .map_err(|e| Failure::input(format_args!("{name} is no strategy: {e}")))?;
         if answers.is_empty() {

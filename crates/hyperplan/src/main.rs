@@ -6,6 +6,8 @@ mod config;
 mod configuration;
 mod explain;
 mod failure;
+mod files;
+mod guard;
 mod instances;
 mod load;
 mod output;

@@ -90,16 +90,6 @@ impl Output {
     }
 }
 
-/// Writes a file.
-pub(crate) fn write_file(path: &Path, contents: &[u8]) -> Result<()> {
-    std::fs::write(path, contents).map_err(|e| cannot_write(path, &e))
-}
-
-/// The failure to write a file.
-pub(crate) fn cannot_write(path: &Path, error: &io::Error) -> Failure {
-    Failure::input(format!("cannot write {}: {error}", path.display()))
-}
-
 /// Refuses a file that could not be written after all the work.
 pub(crate) fn check_writable(path: &Path) -> Result<()> {
     if path.is_dir() {

@@ -3,6 +3,7 @@
 use crate::args::{self, Minimize};
 use crate::explain::{Explain, Why};
 use crate::failure::{Failure, Result};
+use crate::files::read_source;
 use crate::load::{self, Loaded};
 use crate::output::Output;
 use hyperplan_plan::{self as plan, Config, Least, MinimizeError, Verdict, minimize};
@@ -33,7 +34,7 @@ impl<'a> Parameter<'a> {
     ) -> Result<(Self, Loaded)> {
         let constant = wanted.constant.as_str();
         let start = Instant::now();
-        let text = load::read_source(&args.file)?;
+        let text = read_source(&args.file)?;
         let mut sources = SourceMap::new();
         let source = sources.add(args.file.display().to_string(), text.as_str());
         let (file, _) = parse(source, &text);

@@ -1,7 +1,8 @@
 //! How results and messages are printed, where several commands do it alike.
 
 use crate::failure::{Exit, Failure, Result};
-use crate::output::{Output, write_file};
+use crate::files::write_bytes;
+use crate::output::Output;
 use hyperplan_render::{Scene, TextStyle, svg, text_map};
 use hyperplan_syntax::{Diagnostic, SourceMap, render};
 use serde::Serialize;
@@ -82,5 +83,5 @@ pub(crate) fn write_picture(scene: Scene<'_>, picture: &Picture) -> Result<()> {
         Kind::Svg => svg(scene),
         Kind::Text => text_map(scene, TextStyle::default()),
     };
-    write_file(&picture.path, drawn.map_err(Failure::input)?.as_bytes())
+    write_bytes(&picture.path, drawn.map_err(Failure::input)?.as_bytes())
 }

@@ -1,7 +1,7 @@
 //! The folder of a family: its log, and files that are there whole or not at all.
 
 use crate::failure::{Failure, Result};
-use crate::output::cannot_write;
+use crate::files::{cannot_write, write_bytes};
 use hyperplan_family::{Head, Log, Manifest, Record, sha256};
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -113,20 +113,12 @@ impl Store {
     }
 }
 
-/// Writes a file of a folder so that it is there whole or not at all, whenever this process ends.
+/// Writes a file of a folder, whole or not at all.
 pub(crate) fn write_whole(folder: &Path, file: &str, contents: &[u8]) -> Result<()> {
     let path = folder.join(file);
-    let write = || {
-        let parent = path.parent().unwrap_or(folder);
-        fs::create_dir_all(parent)?;
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let unfinished = parent.join(format!(".{name}.part"));
-        let mut to = File::create(&unfinished)?;
-        to.write_all(contents)?;
-        to.sync_data()?;
-        fs::rename(&unfinished, &path)
-    };
-    write().map_err(|e| cannot_write(&path, &e))
+    let parent = path.parent().unwrap_or(folder);
+    fs::create_dir_all(parent).map_err(|e| cannot_write(parent, &e))?;
+    write_bytes(&path, contents)
 }
 
 /// What is not the same of two families.

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{hyperplan, text};
+use common::{hyperplan, hyperplan_with, specs, text};
 
 #[test]
 fn files_that_are_no_problem() {
@@ -28,6 +28,49 @@ fn files_that_are_no_problem() {
             assert!(run.stderr.contains(message) && run.stderr.contains(file), "{command}: {}", run.stderr);
         }
     }
+}
+
+/// What has no end, and what waits for a writer, is refused wherever a file is named.
+#[cfg(unix)]
+#[test]
+fn devices_and_pipes_are_no_files() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (pipe, rooms) = (folder.path().join("pipe"), specs().join("rooms.hp"));
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status().expect("mkfifo is there");
+    assert!(made.success());
+    let map = folder.path().join("map.hp");
+    let objective = "objective o { exists p. F[0,1] x[p] == 0 }";
+    for special in [text(&pipe), "/dev/zero", "/dev/null"] {
+        std::fs::write(&map, format!("system M = grid({special:?}) {{ }} {objective}")).expect("writable");
+        for arguments in [
+            &["solve", special][..],
+            &["check", special],
+            &["check", text(&map)],
+            &["verify", text(&rooms), special],
+            &["verify", text(&rooms), "--objective", "sp", "--model", special],
+            &["plot", text(&rooms), special],
+            &["compare", special],
+        ] {
+            let run = hyperplan(arguments);
+            assert_eq!((run.status, run.stdout.as_str()), (2, ""), "{arguments:?}: {}", run.stderr);
+            assert!(run.stderr.contains("it is no regular file"), "{arguments:?}: {}", run.stderr);
+        }
+    }
+}
+
+#[test]
+fn standard_input_is_a_file_and_byte_order_marks_are_left_out() {
+    let rooms = std::fs::read_to_string(specs().join("rooms.hp")).expect("it is there");
+    let marked = format!("\u{feff}{rooms}");
+    for input in [&rooms, &marked] {
+        let run = hyperplan_with(&["solve", "-", "--objective", "sp", "--format", "json"], input);
+        assert_eq!(run.status, 0, "{}", run.stderr);
+        let rooms = specs().join("rooms.hp");
+        let verified = hyperplan_with(&["verify", text(&rooms), "-"], &run.stdout);
+        assert_eq!(verified.status, 0, "{}", verified.stderr);
+    }
+    let run = hyperplan_with(&["check", "-"], "system");
+    assert!(run.status == 2 && run.stderr.contains("-:1:"), "{}", run.stderr);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use crate::error::Unknown;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 /// A point in time, if any, and a flag that cancels earlier. Clones share the flag.
@@ -12,13 +12,15 @@ pub struct Deadline {
     cancel: Arc<AtomicBool>,
     /// The flags of those that this is a part of.
     wider: Vec<Arc<AtomicBool>>,
+    /// The limit of memory that was reached, in MiB; 0 while none is. All parts share it.
+    exhausted: Arc<AtomicU64>,
 }
 
 impl Deadline {
     /// No point in time; still cancellable.
     #[must_use]
     pub fn never() -> Deadline {
-        Deadline { at: None, cancel: Arc::default(), wider: Vec::new() }
+        Deadline { at: None, cancel: Arc::default(), wider: Vec::new(), exhausted: Arc::default() }
     }
 
     /// So long from now. A duration that the clock cannot hold means never.
@@ -43,7 +45,7 @@ impl Deadline {
     pub fn part(&self) -> Deadline {
         let mut wider = self.wider.clone();
         wider.push(Arc::clone(&self.cancel));
-        Deadline { at: self.at, cancel: Arc::default(), wider }
+        Deadline { at: self.at, cancel: Arc::default(), wider, exhausted: Arc::clone(&self.exhausted) }
     }
 
     /// Cancels.
@@ -51,10 +53,20 @@ impl Deadline {
         self.cancel.store(true, Ordering::Relaxed);
     }
 
-    /// Whether it has passed or was cancelled.
+    /// Ends everything, as memory has reached its limit, in MiB.
+    pub fn exhaust(&self, mib: u64) {
+        self.exhausted.store(mib, Ordering::Relaxed);
+    }
+
+    /// The limit of memory that was reached, in MiB.
+    fn exhausted(&self) -> Option<u64> {
+        Some(self.exhausted.load(Ordering::Relaxed)).filter(|mib| *mib > 0)
+    }
+
+    /// Whether it has passed, was cancelled, or memory has reached its limit.
     #[must_use]
     pub fn passed(&self) -> bool {
-        self.cancelled() || self.at.is_some_and(|at| Instant::now() >= at)
+        self.cancelled() || self.exhausted().is_some() || self.at.is_some_and(|at| Instant::now() >= at)
     }
 
     /// Whether it was cancelled.
@@ -72,15 +84,19 @@ impl Deadline {
     /// How long from now; `None` if there is no point in time, zero if it has passed.
     #[must_use]
     pub fn remaining(&self) -> Option<Duration> {
-        if self.cancelled() {
+        if self.cancelled() || self.exhausted().is_some() {
             return Some(Duration::ZERO);
         }
         self.at.map(|at| at.saturating_duration_since(Instant::now()))
     }
 
-    /// Why it stopped: [`Unknown::Timeout`] or [`Unknown::Interrupted`].
+    /// Why it stopped: [`Unknown::Timeout`], [`Unknown::Interrupted`] or [`Unknown::MemoryLimit`].
     #[must_use]
     pub fn reason(&self) -> Unknown {
-        if self.cancelled() { Unknown::Interrupted } else { Unknown::Timeout }
+        match self.exhausted() {
+            _ if self.cancelled() => Unknown::Interrupted,
+            Some(mib) => Unknown::MemoryLimit { mib },
+            None => Unknown::Timeout,
+        }
     }
 }

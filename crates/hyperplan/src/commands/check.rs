@@ -3,14 +3,15 @@
 use crate::args;
 use crate::config;
 use crate::failure::{Exit, Result};
-use crate::load::{Loaded, read_source};
+use crate::files::read_source;
+use crate::load::Loaded;
 use crate::output::Output;
 use crate::report;
 use hyperplan_plan::{Budget, Lints};
 use hyperplan_syntax::{SourceId, parse, print, to_json};
 
 pub(crate) fn run(args: &args::Check, verbose: bool, out: &mut Output) -> Result {
-    let deadline = config::deadline(args.timeout)?;
+    let deadline = config::deadline(args.timeout, None)?;
     let file = args.problem.file.display().to_string();
     let source = read_source(&args.problem.file)?;
     let (lowered, sources) = Loaded::lower(&args.problem, &source);

@@ -4,12 +4,11 @@ use crate::args;
 use crate::config;
 use crate::explain::Explain;
 use crate::failure::{Exit, Failure, Result};
-use crate::load::{Consts, Loaded, read_source};
-use crate::output::{Output, cannot_write, check_writable};
+use crate::files::{self, cannot_write, read_source};
+use crate::load::{Consts, Loaded};
+use crate::output::{Output, check_writable};
 use hyperplan_plan::{EmitConfig, Emitted, Limits, Quantifiers, States, emit};
 use hyperplan_problem::{Type, display};
-use std::fs::File;
-use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -65,7 +64,7 @@ pub(super) fn common(args: &args::Emit, date: &str) -> Result<EmitConfig> {
         status: config::status(args.status),
         comments: !args.no_comments,
         limits: Limits { prune: !args.no_pruning, ..Limits::default() },
-        deadline: config::deadline(args.timeout)?,
+        deadline: config::deadline(args.timeout, None)?,
         ..EmitConfig::new(date)
     };
     Ok(match &args.author {
@@ -178,23 +177,8 @@ impl Target {
 /// The most bytes of a file that SMT-LIB takes.
 pub(super) const LARGEST: u64 = 50_000_000;
 
-/// Writes a file as a whole or not at all; what is no file, such as a device, as it comes.
 fn write_to(path: &Path, emitted: &mut Emitted, out: &Output) -> Result<()> {
-    let cannot = |e: std::io::Error| cannot_write(path, &e);
-    if std::fs::metadata(path).is_ok_and(|known| !known.is_file()) {
-        let mut device = BufWriter::new(File::create(path).map_err(cannot)?);
-        return emitted.write(&mut device).and_then(|()| device.flush()).map_err(cannot);
-    }
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut options = tempfile::Builder::new();
-    #[cfg(unix)]
-    options.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = options.tempfile_in(folder).map_err(cannot)?;
-    let mut buffer = BufWriter::new(file.as_file_mut());
-    emitted.write(&mut buffer).and_then(|()| buffer.flush()).map_err(cannot)?;
-    drop(buffer);
-    let bytes = file.as_file().metadata().map_or(0, |known| known.len());
-    file.persist(path).map_err(|e| cannot(e.error))?;
+    let bytes = files::write(path, |to| emitted.write(to))?;
     if bytes > LARGEST {
         let megabytes = bytes / 1_000_000;
         out.remark(format_args!("note: {} has {megabytes} MB; SMT-LIB takes at most 50", path.display()));

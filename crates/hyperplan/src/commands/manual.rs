@@ -2,7 +2,8 @@
 
 use crate::args::{self, Cli};
 use crate::failure::{Exit, Failure, Result};
-use crate::output::{Output, cannot_write};
+use crate::files::cannot_write;
+use crate::output::Output;
 use clap::CommandFactory as _;
 
 pub(crate) fn completions(args: &args::Completions, out: &mut Output) -> Result {

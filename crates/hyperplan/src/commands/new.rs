@@ -2,7 +2,8 @@
 
 use crate::args;
 use crate::failure::{Exit, Failure, Result};
-use crate::output::{Output, cannot_write};
+use crate::files::cannot_write;
+use crate::output::Output;
 use hyperplan_compare::one_line;
 use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write as _};

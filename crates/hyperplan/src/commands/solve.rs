@@ -4,8 +4,10 @@ use crate::args::{self, Format};
 use crate::config;
 use crate::explain::{Explain, Why};
 use crate::failure::{Exit, Failure, Result};
+use crate::files::write_bytes;
+use crate::guard;
 use crate::load::Loaded;
-use crate::output::{Output, write_file};
+use crate::output::Output;
 use crate::parameter::{Parameter, Searched};
 use crate::report::{json, write_picture};
 use hyperplan_plan::{self as plan, MinimizeError};
@@ -36,11 +38,13 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
     let several = objectives.len() > 1;
     let mut worst = Exit::Good;
     let mut saved = String::new();
+    let mut drawn = Ok(());
     for (index, objective) in objectives.into_iter().enumerate() {
         if out.is_closed() {
             break;
         }
         let start = Instant::now();
+        guard::doing("searching for a strategy");
         let (outcome, searched) = match solve(&loaded, objective, parameter.as_ref(), &config.plan, explain) {
             Ok(found) => found,
             Err((failure, reason_code)) => {
@@ -54,6 +58,7 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
                 continue;
             }
         };
+        guard::doing("telling what was found");
         let total = loaded.time + start.elapsed();
         let loaded = searched.as_ref().map_or(&loaded, |searched| &searched.loaded);
         let objective = loaded.problem.objective(&objective.name).unwrap_or(objective);
@@ -75,16 +80,17 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
         outcome.notes.iter().for_each(|note| out.remark(format_args!("note: {}", explain.note(note))));
         if let (Some(picture), Some(_)) = (&config.plot, &outcome.witness) {
             let named = several.then(|| picture.for_objective(&objective.name));
-            write_picture(found.scene(), named.as_ref().unwrap_or(picture))?;
+            // What was found is saved even if it cannot be drawn.
+            drawn = drawn.and(write_picture(found.scene(), named.as_ref().unwrap_or(picture)));
         }
         saved.push_str(&json(&answer)?);
         saved.push('\n');
         worst = worst.max(status(&answer));
     }
     if let Some(path) = &config.save {
-        write_file(path, saved.as_bytes())?;
+        write_bytes(path, saved.as_bytes())?;
     }
-    Ok(worst)
+    drawn.map(|()| worst)
 }
 
 /// The outcome for an objective, or for the least value of a constant.

@@ -3,8 +3,9 @@
 use crate::args;
 use crate::explain::Explain;
 use crate::failure::{Exit, Failure, Result};
-use crate::load::{Given, Loaded, read_source};
-use crate::output::{Output, cannot_write};
+use crate::files::{self, read_source, write_bytes};
+use crate::load::{Given, Loaded};
+use crate::output::Output;
 use crate::report;
 use hyperplan_plan::strategy_of_model;
 use hyperplan_problem::answer::{WitnessPath, to_witness};
@@ -57,12 +58,8 @@ fn of_model<'l>(
     name: Option<&str>,
     file: &Path,
 ) -> Result<Vec<(&'l Objective, Strategy)>> {
-    let shown = file.display();
-    let text = match file.to_str() {
-        Some("-") => std::io::read_to_string(std::io::stdin())
-            .map_err(|e| Failure::input(format_args!("cannot read standard input: {e}")))?,
-        _ => read_source(file)?,
-    };
+    let shown = files::name(file);
+    let text = read_source(file)?;
     let model = PrintedModel::read(&text);
     let model = model.map_err(|e| Failure::input(format_args!("{shown} is no model: {e}")))?;
     let objectives = loaded.selected(name, false)?;
@@ -84,7 +81,7 @@ fn save(loaded: &Loaded, strategies: &[(&Objective, Strategy)], path: &Path) -> 
         text += &report::json(&saved)?;
         text.push('\n');
     }
-    std::fs::write(path, text).map_err(|e| cannot_write(path, &e))
+    write_bytes(path, text.as_bytes())
 }
 
 /// A strategy without a verdict.

@@ -7,7 +7,7 @@ pub(crate) mod fakes;
 
 pub(crate) mod compare;
 
-use std::io::Write as _;
+use std::io::{Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
@@ -44,6 +44,13 @@ pub(crate) fn command(arguments: &[&str]) -> Command {
 /// Runs the command in the folder of the specs.
 pub(crate) fn hyperplan(arguments: &[&str]) -> Run {
     Run::new(command(arguments).output().expect("the command was built for this test"))
+}
+
+/// As [`hyperplan`], with a text on standard input.
+pub(crate) fn hyperplan_with(arguments: &[&str], input: &str) -> Run {
+    let mut file = tempfile::tempfile().expect("a temporary file");
+    file.write_all(input.as_bytes()).and_then(|()| file.rewind()).expect("writable");
+    Run::new(command(arguments).stdin(file).output().expect("the command was built for this test"))
 }
 
 /// The folder of the specs.

@@ -1,0 +1,118 @@
+//! Reading files: regular ones of a sensible size, or standard input. Writing them whole or not at all.
+
+use crate::failure::{Failure, Result};
+use std::fs::File;
+use std::io::{self, BufWriter, Read, Write};
+use std::path::Path;
+
+/// The most bytes of a file that are read: far more than any map or strategy has.
+const FILE_LIMIT: u64 = 1 << 30;
+
+/// The name of standard input.
+pub(crate) const STDIN: &str = "-";
+
+/// The text of a file; of standard input, where it is called `-`. A byte order mark is left out.
+pub(crate) fn read_source(path: &Path) -> Result<String> {
+    let cannot = |why: String| Failure::input(format_args!("cannot read {}: {why}", name(path)));
+    let bytes = if is_stdin(path) { limited(io::stdin().lock()) } else { read_bytes(path) };
+    let text = String::from_utf8(bytes.map_err(|e| cannot(reason(&e)))?).map_err(|error| {
+        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        if good.contains(&0) {
+            return cannot("it is not a text file".to_owned());
+        }
+        let line = good.iter().filter(|byte| **byte == b'\n').count() + 1;
+        cannot(format!("it is not in UTF-8; the first byte that cannot be read is on line {line}"))
+    })?;
+    Ok(match text.strip_prefix('\u{feff}') {
+        Some(rest) => rest.to_owned(),
+        None => text,
+    })
+}
+
+/// What a file is called in messages and answers.
+pub(crate) fn name(path: &Path) -> String {
+    if is_stdin(path) { "standard input".to_owned() } else { path.display().to_string() }
+}
+
+pub(crate) fn is_stdin(path: &Path) -> bool {
+    path.as_os_str() == STDIN
+}
+
+/// The bytes of a regular file. What has no end, or waits for somebody to write, is none.
+pub(crate) fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
+    let data = std::fs::metadata(path)?;
+    if data.is_dir() {
+        return Err(io::Error::other("it is a directory"));
+    }
+    if !data.is_file() {
+        return Err(io::Error::other("it is no regular file, but a device, a pipe or a socket"));
+    }
+    if data.len() > FILE_LIMIT {
+        return Err(too_long());
+    }
+    limited(File::open(path)?)
+}
+
+/// What there is to read, if it is not too long.
+fn limited(from: impl Read) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    from.take(FILE_LIMIT + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > FILE_LIMIT { Err(too_long()) } else { Ok(bytes) }
+}
+
+fn too_long() -> io::Error {
+    io::Error::other(format!("it has more than {FILE_LIMIT} bytes"))
+}
+
+/// Why a file cannot be read, in words without the system's error number.
+pub(crate) fn reason(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+        io::ErrorKind::StorageFull => "the disk is full".to_owned(),
+        _ => error.to_string(),
+    }
+}
+
+/// Writes a file so that it is there whole, or as it was before, whenever this process or the machine ends and however
+/// full the disk is; what is no regular file, such as a device, is written as it comes. How many bytes it has.
+pub(crate) fn write(path: &Path, print: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<u64> {
+    write_whole(path, print).map_err(|e| cannot_write(path, &e))
+}
+
+fn write_whole(path: &Path, print: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<u64> {
+    let known = std::fs::metadata(path).ok();
+    if known.as_ref().is_some_and(|known| !known.is_file()) {
+        let mut device = BufWriter::new(File::create(path)?);
+        print(&mut device)?;
+        return device.flush().map(|()| 0);
+    }
+    // A link stays a link.
+    let path = &if known.is_some() { path.canonicalize()? } else { path.to_owned() };
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut options = tempfile::Builder::new();
+    #[cfg(unix)]
+    options.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = options.tempfile_in(folder)?;
+    let mut buffer = BufWriter::new(file.as_file_mut());
+    print(&mut buffer)?;
+    buffer.flush()?;
+    drop(buffer);
+    if let Some(known) = known {
+        file.as_file().set_permissions(known.permissions())?;
+    }
+    file.as_file().sync_data()?;
+    let bytes = file.as_file().metadata()?.len();
+    file.persist(path)?;
+    Ok(bytes)
+}
+
+/// As [`write`], what is in memory.
+pub(crate) fn write_bytes(path: &Path, contents: &[u8]) -> Result<()> {
+    write(path, |to| to.write_all(contents)).map(|_| ())
+}
+
+/// The failure to write a file.
+pub(crate) fn cannot_write(path: &Path, error: &io::Error) -> Failure {
+    Failure::input(format_args!("cannot write {}: {}", name(path), reason(error)))
+}
