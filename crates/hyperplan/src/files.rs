@@ -107,7 +107,7 @@ fn write_whole(path: &Path, print: impl FnOnce(&mut dyn Write) -> io::Result<()>
     Ok(bytes)
 }
 
-/// As [`write`], what is in memory.
+/// As [`write()`], what is in memory.
 pub(crate) fn write_bytes(path: &Path, contents: &[u8]) -> Result<()> {
     write(path, |to| to.write_all(contents)).map(|_| ())
 }

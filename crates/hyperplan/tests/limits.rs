@@ -28,13 +28,11 @@ fn giants() -> (TempDir, Vec<PathBuf>) {
         format!("system S {{ {vars} {clauses} }}\n{objective}")
     };
     let labels = |n: usize| {
-        let mut text =
-            String::from("system S { state a: 0..9; action u; on u { a' = a + 1; } absorb a == 9;\n");
-        text.push_str("label l0 = a == 1;\n");
-        for i in 1..n {
-            let _ = writeln!(text, "label l{i} = l{} & (l{} | a == {});", i - 1, i - 1, i % 10);
-        }
-        format!("{text}}}\nobjective o {{ exists p. F[0,9] l{}[p] }}", n - 1)
+        let label = |i: usize| format!("label l{i} = l{0} & (l{0} | a == {1});", i - 1, i % 10);
+        let labels: String = (1..n).map(label).collect();
+        let start =
+            "system S { state a: 0..9; action u; on u { a' = a + 1; } absorb a == 9; label l0 = a == 1;";
+        format!("{start} {labels} }}\nobjective o {{ exists p. F[0,9] l{}[p] }}", n - 1)
     };
     let nested = |n: usize| {
         let open: String =
