@@ -2,10 +2,11 @@
 """Compares all solvers on all problems, in a folder named after the day, and says what has become worse since the last.
 
 Ends with 1 if something has: an answer changed or got lost, or takes twice as long and a second more. An interrupted
-night goes on where it stopped if started again on the same day. Without --problems every fault is planted too
-(scripts/planted-faults.py): one that the tests miss is bad news as well.
+night goes on where it stopped if started again on the same day. With --faults every fault of scripts/planted-faults.py is
+planted after that: one that the tests miss is bad news as well.
 """
 
+import argparse
 import datetime
 import json
 import os
@@ -19,18 +20,19 @@ WAY = ("solver", "quantifiers", "states", "options")
 
 
 def main() -> None:
-    status = night()
-    if "--problems" not in sys.argv:
+    parser = compared.parser(__doc__, "nightly", 20)
+    parser.add_argument("--faults", action="store_true", help="plant every fault, too")
+    parser.add_argument("--problems", nargs="+", metavar="FILE|FOLDER", help="instead of those in specs/")
+    parser.add_argument("--day", default=datetime.date.today().isoformat(), help="the folder's name [today]")
+    arguments, others = parser.parse_known_args()
+    status = night(arguments, others)
+    if arguments.faults:
         status = status or subprocess.run([compared.ROOT / "scripts" / "planted-faults.py"]).returncode
     sys.exit(status)
 
 
-def night() -> int:
+def night(arguments: argparse.Namespace, others: list[str]) -> int:
     """Compares, and says what is new: 0 for nothing."""
-    parser = compared.parser(__doc__, "nightly", 20)
-    parser.add_argument("--problems", nargs="+", metavar="FILE|FOLDER", help="instead of those in specs/")
-    parser.add_argument("--day", default=datetime.date.today().isoformat(), help="the folder's name [today]")
-    arguments, others = parser.parse_known_args()
     named = arguments.problems and [os.path.relpath(problem, compared.ROOT) for problem in arguments.problems]
     nights = arguments.out
     before = sorted(path.parent for path in nights.glob("*/runs.json") if path.parent.name < arguments.day)
