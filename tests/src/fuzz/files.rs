@@ -167,11 +167,16 @@ pub(super) fn map(data: &[u8]) {
     let lowered = on_file(&format!("grid(\"m.txt\") {{ {items} }}"), &|_| Ok(data.to_vec()));
     let Some(map) = map_of(&lowered) else { return };
     let text = String::from_utf8_lossy(data);
-    let is_benchmark = text.lines().next().is_some_and(|line| line.split_whitespace().next() == Some("type"));
-    let (letters, rows) = match text.split_once("map") {
-        Some((_, rows)) if is_benchmark => ("x@OT", rows),
-        _ => ("x#@", text.as_ref()),
+    // A header in any spelling ends with a line `map`.
+    let words = |line: &str| line.split_whitespace().next().unwrap_or_default().to_lowercase();
+    let is_note = |line: &str| line.trim_start().starts_with("# ") || line.trim().is_empty();
+    let first = text.trim_start_matches('\u{feff}').lines().find(|line| !is_note(line)).map(words);
+    let is_benchmark = first.is_some_and(|word| ["type", "height", "width"].contains(&word.as_str()));
+    let rows: Vec<&str> = match is_benchmark {
+        true => text.lines().skip_while(|line| words(line) != "map").skip(1).collect(),
+        false => text.lines().collect(),
     };
+    let (letters, rows) = (if is_benchmark { "x@OT" } else { "x#@" }, rows.concat());
     let count = rows.chars().filter(|letter| letters.contains(*letter)).count();
     assert_eq!(count, map.obstacles.len(), "the number of obstacles");
 }

@@ -4,7 +4,7 @@ use super::base::Base;
 use super::consts::duplicate;
 use super::diagnostics::suggest;
 use super::env::Env;
-use super::grid::picture::is_picture;
+use super::grid::formats::is_picture;
 use super::grid::{self, Format, GridMap, Legend, MOVES, Meaning, Move, Row, Rule, Rules};
 use super::ros;
 use hyperplan_syntax::ast::{self, Ident, SystemItem, Text};

@@ -1,7 +1,7 @@
 //! Maps of the ROS `map_server`: a YAML file that names a picture and says what its shades mean.
 
 use super::env::Env;
-use super::grid::{GridMap, MAX_CELLS, picture};
+use super::grid::{GridMap, MAX_CELLS, formats, picture};
 use hyperplan_syntax::{Diagnostic, SourceId, Span};
 use serde::Deserialize;
 use serde_saphyr::{Location, Spanned};
@@ -50,10 +50,10 @@ pub(super) fn read(path: &str, span: Span, source: SourceId, yaml: &str, env: &m
             return env.diagnostics.refuse(Diagnostic::error("cannot-read", place, message));
         }
     };
-    let picture = match picture::read(&bytes, MAX_CELLS) {
+    let picture = match formats::read(&bytes, MAX_CELLS) {
         Ok(picture) => picture,
         Err(message) => {
-            let code = if picture::is_picture(&bytes) { "bad-map" } else { "not-supported" };
+            let code = if formats::is_picture(&bytes) { "bad-map" } else { "not-supported" };
             return env.diagnostics.refuse(Diagnostic::error(code, place, format!("`{image}`: {message}")));
         }
     };

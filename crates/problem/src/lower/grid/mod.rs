@@ -1,5 +1,6 @@
 //! Maps: reading them, and turning their rules into ordinary transition clauses.
 
+pub(crate) mod formats;
 mod moves;
 mod pgm;
 pub(crate) mod picture;

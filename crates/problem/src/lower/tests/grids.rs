@@ -255,11 +255,11 @@ fn ros_maps() {
     let map = problem.systems.first().and_then(|s| s.map.clone()).expect("a map");
     // The top picture row is y = 1; gray is unknown, and so an obstacle.
     assert_eq!((map.width, map.height, map.obstacles), (3, 2, vec![(1, 1), (2, 0)]));
-    let raw = crate::lower::grid::picture::read(b"P5 2 1 255\n\x00\xff", 10).expect("a picture");
+    let raw = crate::lower::grid::formats::read(b"P5 2 1 255\n\x00\xff", 10).expect("a picture");
     assert_eq!((raw.at(0, 0), raw.at(1, 0)), (0, 255));
     for bad in [&b"P5 2 1 255\n\x00"[..], b"P5 2", b"P6 1 1 255\n000", b"P2 1 1 255\n256", b"", b"P2 9 9 9 9"]
     {
-        assert!(crate::lower::grid::picture::read(bad, 10).is_err());
+        assert!(crate::lower::grid::formats::read(bad, 10).is_err());
     }
 }
 
@@ -333,7 +333,7 @@ fn pictures_are_never_shifted() {
             let mut bytes = format!("P5{a}3{b}2{a}255{c}").into_bytes();
             bytes.extend_from_slice(&pixels[cut..]);
             bytes.extend(std::iter::repeat_n(b'x', extra));
-            match crate::lower::grid::picture::read(&bytes, 100) {
+            match crate::lower::grid::formats::read(&bytes, 100) {
                 // A line end of two bytes is one white space only where the sizes say so.
                 Ok(picture) if extra == 0 && cut == 0 => {
                     let shades = pixels.map(u16::from);
@@ -369,13 +369,13 @@ fn png_pictures() {
         (encoded(png::ColorType::Rgb, eight, &[0, 30, 60, 255, 255, 255]), [30, 255]),
         (encoded(png::ColorType::Rgba, eight, &[0, 0, 0, 0, 255, 255, 255, 255]), [0, 255]),
     ] {
-        let picture = crate::lower::grid::picture::read(&bytes, 100).expect("a picture");
+        let picture = crate::lower::grid::formats::read(&bytes, 100).expect("a picture");
         assert_eq!((picture.width, picture.height, picture.white), (2, 1, 255));
         assert_eq!(picture.shades, shades);
         for end in 0..bytes.len() - 12 {
-            assert!(crate::lower::grid::picture::read(&bytes[..end], 100).is_err(), "cut after {end} bytes");
+            assert!(crate::lower::grid::formats::read(&bytes[..end], 100).is_err(), "cut after {end} bytes");
         }
-        assert!(crate::lower::grid::picture::read(&bytes, 1).is_err());
+        assert!(crate::lower::grid::formats::read(&bytes, 1).is_err());
     }
 }
 
