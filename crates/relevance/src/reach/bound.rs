@@ -12,7 +12,7 @@
 
 use super::product::Product;
 use super::question::Place;
-use crate::residual::{FALSE, Residual, Residuals, Settling};
+use crate::residual::{FALSE, Residual, Residuals};
 use hyperplan_problem::Mode;
 use hyperplan_space::{Graph, LIVE, StateIx};
 use rustc_hash::FxHashMap;
@@ -25,7 +25,8 @@ const NEVER: u32 = u32::MAX;
 
 /// Lower bounds for one path.
 pub(crate) struct Bound {
-    settling: Settling,
+    /// From when on the settling atoms are known.
+    settled: u32,
     /// The relaxed residuals, and the position of each.
     residuals: Vec<Residual>,
     rows: FxHashMap<Residual, usize>,
@@ -47,9 +48,8 @@ type Node = (usize, StateIx);
 impl Bound {
     /// `None` where there are too many relaxed residuals.
     pub(crate) fn new(product: &mut Product<'_, 1>) -> Option<Bound> {
-        let settling = product.atoms.settling;
         let mut bound = Bound {
-            settling,
+            settled: product.atoms.settling.from.unwrap_or(0),
             residuals: Vec::new(),
             rows: FxHashMap::default(),
             steps: Vec::new(),
@@ -81,11 +81,11 @@ impl Bound {
 
     /// The row of what is left after a time, if something is known of it.
     pub(crate) fn met(&mut self, residuals: &mut Residuals, residual: Residual, time: u32) -> Option<usize> {
-        let time = time.min(self.settling.from.unwrap_or(0));
+        let time = time.min(self.settled);
         if let Some(&row) = self.met.get(&(residual, time)) {
             return row;
         }
-        let relaxed = residuals.relax(residual, time + 1, &self.settling);
+        let relaxed = residuals.relax(residual, time + 1);
         let row = self.rows.get(&relaxed).copied();
         self.met.insert((residual, time), row);
         row
@@ -94,7 +94,7 @@ impl Bound {
     /// Whether a state with a row can matter at a time, where something more is owed at most up to `last`.
     pub(crate) fn admits(&self, row: usize, state: StateIx, time: u32, last: u32) -> bool {
         let [owed, harmed] = self.steps[row][state as usize];
-        let known = self.settling.from.unwrap_or(0).saturating_sub(1).max(time);
+        let known = self.settled.saturating_sub(1).max(time);
         time.saturating_add(owed) <= last.max(time) && time.saturating_add(harmed) <= known
     }
 }
@@ -113,7 +113,7 @@ struct Search<'s> {
 impl Search<'_> {
     /// All states with what is left there, relaxed; the initial ones.
     fn explore(&mut self, product: &mut Product<'_, 1>) -> Result<Vec<Node>, TooMany> {
-        let relaxed = product.residuals.relax(product.initial, 0, &self.bound.settling);
+        let relaxed = product.residuals.relax(product.initial, 0);
         let mut index: Vec<Vec<u32>> = Vec::new();
         let initial = &self.graph.initial;
         for &state in initial {
@@ -165,9 +165,8 @@ impl Search<'_> {
 
     /// Breadth-first searches backwards from where nothing is owed, and from where no harm is done.
     fn measure(&mut self, residuals: &Residuals) {
-        let settling = self.bound.settling;
         let arrived: Vec<[bool; 2]> = (self.bound.residuals.iter())
-            .map(|&r| [residuals.owes_nothing(r, &settling), residuals.can_hold(r, &settling)])
+            .map(|&r| [residuals.owes_nothing(r), residuals.can_hold(r)])
             .collect();
         self.edges.sort_unstable_by_key(|edge| edge.1);
         let mut starts = vec![0u32; self.nodes.len() + 1];

@@ -23,7 +23,8 @@ impl<'a, const N: usize> Product<'a, N> {
         let horizon = question.paths.iter().map(|&path| task.horizon(path)).max().unwrap_or(0);
         let atoms = Atoms::new(question, graphs, horizon);
         let bit = |id: FormulaId| atoms.bit.get(&id).copied();
-        let (residuals, initial) = Residuals::new(&task.objective.formula, question.goal, &bit);
+        let formula = &task.objective.formula;
+        let (residuals, initial) = Residuals::settling(formula, question.goal, atoms.settling, &bit);
         Product { question, graphs, horizon, atoms, residuals, initial }
     }
 
@@ -46,7 +47,7 @@ impl<'a, const N: usize> Product<'a, N> {
 
     /// Whether nothing but safety is owed any more.
     pub(super) fn owes_nothing(&self, residual: Residual) -> bool {
-        self.residuals.owes_nothing(residual, &self.atoms.settling)
+        self.residuals.owes_nothing(residual)
     }
 
     /// Whether every atom of the formula is known.

@@ -58,6 +58,10 @@ pub struct Now {
 #[derive(Clone, Debug)]
 pub struct Residuals {
     shapes: Vec<Shape>,
+    /// Of each shape: whether it can still be met, and whether it owes nothing, as far as the settling atoms tell.
+    /// Parts stand before what has them, so it is found when a shape is made, once.
+    outlooks: Vec<(bool, bool)>,
+    settling: Settling,
     index: FxHashMap<Shape, Residual>,
     steps: FxHashMap<(Residual, Now), Residual>,
     reads: FxHashMap<Residual, u64>,
@@ -70,8 +74,20 @@ impl Residuals {
         goal: &Goal,
         bit: &dyn Fn(FormulaId) -> Option<u8>,
     ) -> (Residuals, Residual) {
+        Residuals::settling(formula, goal, Settling::default(), bit)
+    }
+
+    /// The same, where some of the known atoms settle.
+    pub(crate) fn settling(
+        formula: &Formula,
+        goal: &Goal,
+        settling: Settling,
+        bit: &dyn Fn(FormulaId) -> Option<u8>,
+    ) -> (Residuals, Residual) {
         let mut all = Residuals {
             shapes: vec![Shape::True, Shape::False],
+            outlooks: vec![(true, true), (false, false)],
+            settling,
             index: FxHashMap::default(),
             steps: FxHashMap::default(),
             reads: FxHashMap::default(),
@@ -128,6 +144,7 @@ impl Residuals {
             return known;
         }
         let id = self.shapes.len() as Residual;
+        self.outlooks.push(self.outlook(&shape));
         self.shapes.push(shape.clone());
         self.index.insert(shape, id);
         id

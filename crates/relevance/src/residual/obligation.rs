@@ -31,85 +31,67 @@ impl Settling {
     }
 }
 
-/// What was found of residuals under one settling. They share parts, which would be walked once for each way to them.
-#[derive(Default)]
-struct Known {
-    /// By whether the time of the next position is known.
-    relaxed: FxHashMap<(Residual, bool), Residual>,
-    outlooks: Outlooks,
-}
-
-/// Whether residuals can still be met, and whether they owe nothing.
-type Outlooks = FxHashMap<Residual, (bool, bool)>;
+/// What residuals are relaxed to, by whether the time of the next position is known. They share parts, which would be
+/// walked once for each way to them.
+type Relaxed = FxHashMap<(Residual, bool), Residual>;
 
 impl Residuals {
     /// A weaker residual without numbers: deadlines are lifted, and what must always hold is forgotten, but for what
     /// is asked for at a time when it will be false, since the settling atoms are known. `time` is that of the next
     /// position.
-    pub(crate) fn relax(&mut self, residual: Residual, time: u32, settling: &Settling) -> Residual {
-        self.relaxed(residual, Some(time), settling, &mut Known::default())
+    pub(crate) fn relax(&mut self, residual: Residual, time: u32) -> Residual {
+        self.relaxed(residual, Some(time), &mut Relaxed::default())
     }
 
     /// The same; within operators the time is open. Recursion is bounded by the nesting of the formula.
-    fn relaxed(
-        &mut self,
-        residual: Residual,
-        time: Option<u32>,
-        settling: &Settling,
-        known: &mut Known,
-    ) -> Residual {
-        if let Some(&relaxed) = known.relaxed.get(&(residual, time.is_some())) {
+    fn relaxed(&mut self, residual: Residual, time: Option<u32>, known: &mut Relaxed) -> Residual {
+        if let Some(&relaxed) = known.get(&(residual, time.is_some())) {
             return relaxed;
         }
         let shape = self.shapes[residual as usize].clone();
         let relaxed = match shape {
             Shape::True | Shape::False | Shape::Literal { .. } => return residual,
             Shape::And(ref parts) | Shape::Or(ref parts) => {
-                let parts = parts.iter().map(|&part| self.relaxed(part, time, settling, known)).collect();
+                let parts = parts.iter().map(|&part| self.relaxed(part, time, known)).collect();
                 self.join(matches!(shape, Shape::And(_)), parts)
             }
             Shape::Next { strong: false, .. } => TRUE,
             Shape::Next { strong: true, then } => {
-                let then = self.relaxed(then, None, settling, known);
+                let then = self.relaxed(then, None, known);
                 self.next(true, then)
             }
             Shape::Until(_, left, right) => {
-                let [left, right] = [left, right].map(|part| self.relaxed(part, None, settling, known));
+                let [left, right] = [left, right].map(|part| self.relaxed(part, None, known));
                 self.temporal(true, Interval::ALWAYS, left, right)
             }
             Shape::Release(interval, left, right) => {
-                let covers = settling.from.zip(time).is_some_and(|(from, time)| {
+                let covers = self.settling.from.zip(time).is_some_and(|(from, time)| {
                     let from = from.saturating_sub(time);
                     interval.lo <= from && interval.hi.is_none_or(|hi| from <= hi)
                 });
-                if !covers || self.outlook(right, settling, &mut known.outlooks).0 {
+                if !covers || self.can_hold(right) {
                     TRUE
                 } else {
-                    let left = self.relaxed(left, None, settling, known);
-                    let right = self.only_settling(right, settling, &mut FxHashMap::default());
+                    let left = self.relaxed(left, None, known);
+                    let right = self.only_settling(right, &mut FxHashMap::default());
                     self.temporal(false, Interval::ALWAYS, left, right)
                 }
             }
         };
-        known.relaxed.insert((residual, time.is_some()), relaxed);
+        known.insert((residual, time.is_some()), relaxed);
         relaxed
     }
 
     /// A weaker residual that reads settling atoms only.
-    fn only_settling(
-        &mut self,
-        residual: Residual,
-        settling: &Settling,
-        known: &mut FxHashMap<Residual, Residual>,
-    ) -> Residual {
+    fn only_settling(&mut self, residual: Residual, known: &mut FxHashMap<Residual, Residual>) -> Residual {
         if let Some(&weaker) = known.get(&residual) {
             return weaker;
         }
         let shape = self.shapes[residual as usize].clone();
         let weaker = match shape {
-            Shape::Literal { bit, .. } if settling.known >> bit & 1 == 1 => residual,
+            Shape::Literal { bit, .. } if self.settling.known >> bit & 1 == 1 => residual,
             Shape::And(ref parts) | Shape::Or(ref parts) => {
-                let parts = parts.iter().map(|&part| self.only_settling(part, settling, known)).collect();
+                let parts = parts.iter().map(|&part| self.only_settling(part, known)).collect();
                 self.join(matches!(shape, Shape::And(_)), parts)
             }
             Shape::False => FALSE,
@@ -124,25 +106,22 @@ impl Residuals {
     }
 
     /// Whether a residual can still be met once the settling atoms are known, as far as they tell.
-    pub(crate) fn can_hold(&self, residual: Residual, settling: &Settling) -> bool {
-        self.outlook(residual, settling, &mut FxHashMap::default()).0
+    pub(crate) fn can_hold(&self, residual: Residual) -> bool {
+        self.outlooks[residual as usize].0
     }
 
     /// Whether nothing is owed any more but that something be never the case.
-    pub(crate) fn owes_nothing(&self, residual: Residual, settling: &Settling) -> bool {
-        self.outlook(residual, settling, &mut FxHashMap::default()).1
+    pub(crate) fn owes_nothing(&self, residual: Residual) -> bool {
+        self.outlooks[residual as usize].1
     }
 
-    /// Whether a residual can still be met, and whether nothing is owed.
-    fn outlook(&self, residual: Residual, settling: &Settling, known: &mut Outlooks) -> (bool, bool) {
-        if let Some(&outlook) = known.get(&residual) {
-            return outlook;
-        }
-        let mut of = |part: &Residual| self.outlook(*part, settling, known);
-        let outlook = match &self.shapes[residual as usize] {
+    /// Whether a residual of this shape can still be met, and whether nothing is owed, from what is known of its parts.
+    pub(super) fn outlook(&self, shape: &Shape) -> (bool, bool) {
+        let of = |part: &Residual| self.outlooks[*part as usize];
+        match shape {
             Shape::True => (true, true),
             Shape::False => (false, false),
-            Shape::Literal { bit, positive } => settling.literal(*bit, *positive),
+            Shape::Literal { bit, positive } => self.settling.literal(*bit, *positive),
             Shape::And(parts) => parts.iter().map(of).fold((true, true), |a, b| (a.0 && b.0, a.1 && b.1)),
             Shape::Or(parts) => parts.iter().map(of).fold((false, false), |a, b| (a.0 || b.0, a.1 || b.1)),
             Shape::Next { strong: false, .. } => (true, true),
@@ -152,8 +131,6 @@ impl Residuals {
                 let holds = of(right).0;
                 (interval.lo > 0 || holds, holds)
             }
-        };
-        known.insert(residual, outlook);
-        outlook
+        }
     }
 }
