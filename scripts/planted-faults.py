@@ -54,6 +54,8 @@ def main() -> None:
         passed, output = run(words)
         if not passed:
             sys.exit(f"{output}\nfails without any fault: {shlex.join(words)}")
+        if not any(int(count) for count in re.findall(r"^running (\d+) tests?$", output, re.MULTILINE)):
+            sys.exit(f"{output}\nruns no test, so that it would miss all faults: {shlex.join(words)}")
     missed = [fault["name"] for fault in chosen if not caught(fault["name"], *planted[fault["name"]], commands)]
     print(f"{len(chosen) - len(missed)} of {len(chosen)} faults are caught")
     if missed:
