@@ -25,4 +25,4 @@ pub use objective::{Mode, Objective, PathVar, Quantifier, Semantics};
 pub use problem::Problem;
 pub use status::KnownStatus;
 pub use strategy::{Strategy, Trace};
-pub use system::{Clause, Label, Map, System, Update, Var};
+pub use system::{Clause, Label, LabelMemo, Map, System, Update, Var};

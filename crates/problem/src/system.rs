@@ -1,7 +1,7 @@
 //! Discrete transition systems (the paper's Definition 1, with initial states and nondeterminism).
 
 use crate::edges::Edges;
-use crate::expr::{Expr, Leaf, Type};
+use crate::expr::{Expr, Leaf, Type, Value};
 use crate::ids::{ActionId, LabelId, VarId};
 use hyperplan_syntax::Span;
 use typed_index_collections::TiVec;
@@ -58,8 +58,60 @@ pub struct Label {
     pub name: String,
     /// Where it holds.
     pub expr: Expr<Leaf>,
+    /// Whether it reads other labels.
+    pub nested: bool,
     /// Its declaration.
     pub span: Span,
+}
+
+/// What labels are found to be in one state. Labels that read labels may share them, and may be in long chains: so each of
+/// those is found once, and none within another.
+#[derive(Clone, Debug)]
+pub struct LabelMemo<V>(Vec<Option<V>>);
+
+impl<V> Default for LabelMemo<V> {
+    fn default() -> Self {
+        LabelMemo(Vec::new())
+    }
+}
+
+impl<V: Clone> LabelMemo<V> {
+    /// What a label is: as found before, or by `find` of its expression, which gets the memo with all that the expression
+    /// reads.
+    pub fn find(
+        &mut self,
+        system: &System,
+        label: LabelId,
+        find: &mut dyn FnMut(&Expr<Leaf>, &Self) -> V,
+    ) -> V {
+        if let Some(found) = self.known(label) {
+            return found;
+        }
+        if system.labels[label].nested {
+            for below in system.labels_below(label) {
+                if self.known(below).is_none() {
+                    let found = find(&system.labels[below].expr, self);
+                    self.keep(below, found);
+                }
+            }
+        }
+        // What is read only once or twice and reads no label, nearly all, is not worth the room.
+        find(&system.labels[label].expr, self)
+    }
+
+    /// What was found of a label.
+    #[must_use]
+    pub fn known(&self, label: LabelId) -> Option<V> {
+        self.0.get(usize::from(label)).cloned().flatten()
+    }
+
+    fn keep(&mut self, label: LabelId, found: V) {
+        let at = usize::from(label);
+        if self.0.len() <= at {
+            self.0.resize(at + 1, None);
+        }
+        self.0[at] = Some(found);
+    }
 }
 
 /// `on ACTIONS when GUARD { UPDATES }`
@@ -123,5 +175,43 @@ impl System {
     #[must_use]
     pub fn label(&self, name: &str) -> Option<LabelId> {
         self.labels.iter_enumerated().find(|(_, l)| l.name == name).map(|(id, _)| id)
+    }
+
+    /// The labels that a label reads, directly or not, in an order in which each reads only those before it.
+    fn labels_below(&self, label: LabelId) -> Vec<LabelId> {
+        let mut needed = vec![false; usize::from(label) + 1];
+        needed[usize::from(label)] = true;
+        // A label reads only labels before it.
+        for at in (0..needed.len()).rev() {
+            if needed[at] && self.labels[LabelId::from(at)].nested {
+                self.labels[LabelId::from(at)].expr.for_each_leaf(&mut |leaf| {
+                    if let Leaf::Label(read) = leaf {
+                        needed[usize::from(*read)] = true;
+                    }
+                });
+            }
+        }
+        needed.pop();
+        (0..)
+            .zip(needed)
+            .filter(|(_, needed)| *needed)
+            .map(|(at, _): (usize, bool)| LabelId::from(at))
+            .collect()
+    }
+
+    /// The value of an expression where the variables have these values; see [`Expr::evaluate`].
+    #[must_use]
+    pub fn evaluate(&self, expr: &Expr<Leaf>, var: &impl Fn(VarId) -> Option<Value>) -> Option<Value> {
+        let mut labels: LabelMemo<Option<Value>> = LabelMemo::default();
+        let mut find = |expr: &Expr<Leaf>, known: &LabelMemo<Option<Value>>| {
+            expr.evaluate(&mut |leaf| match *leaf {
+                Leaf::Var(v) => var(v),
+                Leaf::Label(l) => known.known(l).flatten(),
+            })
+        };
+        expr.evaluate(&mut |leaf| match *leaf {
+            Leaf::Var(v) => var(v),
+            Leaf::Label(l) => labels.find(self, l, &mut find),
+        })
     }
 }

@@ -6,8 +6,6 @@ use hyperplan_problem::{Expr, Leaf, System, Value};
 /// The truth value of a Boolean expression where variable `v` has the value `known(v)`; `None` where that is not
 /// enough to tell.
 pub(crate) fn truth(system: &System, expr: &Expr<Leaf>, known: &[Option<Value>]) -> Option<bool> {
-    expr.truth(&mut |leaf| match *leaf {
-        Leaf::Var(v) => known.get(usize::from(v)).copied().flatten(),
-        Leaf::Label(l) => truth(system, &system.labels.get(l)?.expr, known).map(Value::Bool),
-    })
+    let value = system.evaluate(expr, &|v| known.get(usize::from(v)).copied().flatten());
+    value.map(|value| value == Value::Bool(true))
 }

@@ -1,7 +1,7 @@
 //! Expressions evaluated on concrete states: of a finite system as a row of integers (Booleans are 0 and 1,
 //! enumeration values their position), which is fast; of any system as values.
 
-use hyperplan_problem::{Comparison, Expr, Leaf, System, Type, Value};
+use hyperplan_problem::{Comparison, Expr, LabelMemo, Leaf, System, Type, Value};
 
 /// A value of a finite type as an integer.
 pub fn code(value: Value) -> i64 {
@@ -70,18 +70,21 @@ pub fn eval<L>(expr: &Expr<L>, leaf: &mut impl FnMut(&L) -> i64) -> i64 {
 
 /// The value of an expression over one system in a state.
 pub fn eval_in(system: &System, expr: &Expr<Leaf>, state: &[i64]) -> i64 {
+    let mut labels = LabelMemo::default();
     eval(expr, &mut |leaf| match *leaf {
         Leaf::Var(v) => state[usize::from(v)],
-        Leaf::Label(l) => eval_in(system, &system.labels[l].expr, state),
+        Leaf::Label(l) => labels.find(system, l, &mut |expr, known| {
+            eval(expr, &mut |leaf| match *leaf {
+                Leaf::Var(v) => state[usize::from(v)],
+                Leaf::Label(l) => known.known(l).unwrap_or(0),
+            })
+        }),
     })
 }
 
 /// The value of an expression over one system in a state; `None` where a number does not fit into 64 bits.
 pub fn value_in(system: &System, expr: &Expr<Leaf>, state: &[Value]) -> Option<Value> {
-    expr.evaluate(&mut |leaf| match *leaf {
-        Leaf::Var(v) => Some(state[usize::from(v)]),
-        Leaf::Label(l) => value_in(system, &system.labels[l].expr, state),
-    })
+    system.evaluate(expr, &|v| Some(state[usize::from(v)]))
 }
 
 /// Whether an expression over one system holds in a state; see [`value_in`].

@@ -2,7 +2,7 @@
 
 use crate::eval::{bounds, eval_in};
 use crate::graph::{Graph, LIVE, Letter, StateIx, TooLarge};
-use hyperplan_problem::{ActionId, Clause, Expr, Leaf, System, Update, VarId};
+use hyperplan_problem::{ActionId, Clause, Expr, LabelId, LabelMemo, Leaf, System, Update, VarId};
 use rustc_hash::FxHashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -226,10 +226,7 @@ pub(crate) fn outcomes(
 ) -> Result<Vec<Vec<i64>>, TooLarge> {
     let mut all = vec![codes.to_vec()];
     for (var, update) in &clause.updates {
-        let values = update_values(system, *var, update, codes);
-        if values.len().saturating_mul(all.len()) > budget {
-            return Err(TooLarge);
-        }
+        let values = update_values(system, *var, update, codes, budget / all.len().max(1))?;
         all = all
             .iter()
             .flat_map(|done| {
@@ -253,16 +250,30 @@ pub(crate) fn update_values_unclipped(system: &System, update: &Update, codes: &
     }
 }
 
-/// The values that an update allows; those outside the variable's type may be left out.
-fn update_values(system: &System, var: VarId, update: &Update, codes: &[i64]) -> Vec<i64> {
-    match update {
-        Update::Assign(_) | Update::OneOf(_) => update_values_unclipped(system, update, codes),
+/// The values that an update allows, no more than `most`; those outside the variable's type may be left out.
+fn update_values(
+    system: &System,
+    var: VarId,
+    update: &Update,
+    codes: &[i64],
+    most: usize,
+) -> Result<Vec<i64>, TooLarge> {
+    let (lo, hi) = match update {
+        Update::Assign(_) => (0, 0),
+        Update::OneOf(es) => (1, es.len() as i64),
         Update::Within(lo, hi) => {
-            let (lo, hi) = (eval_in(system, lo, codes), eval_in(system, hi, codes));
-            let (least, greatest) = bounds(&system.vars[var].ty).unwrap_or((lo, hi));
-            (lo.max(least)..=hi.min(greatest)).collect()
+            let (least, greatest) = bounds(&system.vars[var].ty).ok_or(TooLarge)?;
+            (eval_in(system, lo, codes).max(least), eval_in(system, hi, codes).min(greatest))
         }
+    };
+    // Ranges may have more values than there is memory.
+    if i128::from(hi) - i128::from(lo) >= most as i128 {
+        return Err(TooLarge);
     }
+    Ok(match update {
+        Update::Assign(_) | Update::OneOf(_) => update_values_unclipped(system, update, codes),
+        Update::Within(..) => (lo..=hi).collect(),
+    })
 }
 
 fn action_positions<'a>(system: &'a System, clause: &'a Clause) -> impl Iterator<Item = u32> + 'a {
@@ -279,11 +290,18 @@ fn conjuncts(expr: &Expr<Leaf>) -> Vec<&Expr<Leaf>> {
 
 /// How many variables, in order of declaration, must be assigned before the expression has a value.
 fn variables_needed(system: &System, expr: &Expr<Leaf>) -> usize {
+    let mut labels = LabelMemo::default();
+    last_variable(expr, &mut |l| {
+        labels.find(system, l, &mut |expr, known| last_variable(expr, &mut |l| known.known(l).unwrap_or(0)))
+    })
+}
+
+fn last_variable(expr: &Expr<Leaf>, label: &mut dyn FnMut(LabelId) -> usize) -> usize {
     let mut needed = 0;
     expr.for_each_leaf(&mut |leaf| {
         needed = needed.max(match *leaf {
             Leaf::Var(v) => usize::from(v) + 1,
-            Leaf::Label(l) => variables_needed(system, &system.labels[l].expr),
+            Leaf::Label(l) => label(l),
         });
     });
     needed

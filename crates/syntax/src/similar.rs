@@ -1,22 +1,28 @@
 //! Which known name was probably meant.
 
+/// Names of so many letters and more are no slips of the pen, and take long to compare.
+const LONGEST: usize = 65;
+/// No more candidates are looked at: files made by programs may have thousands of names, and as many mistakes.
+const MOST: usize = 1000;
+
 /// The candidate that is spelled most like `name`, if one is close enough to be a slip of the pen.
 ///
 /// Distance is Damerau-Levenshtein, case counting as half an error at most: one slip in names of up
 /// to four letters, two up to eight, three beyond. Of equally close candidates the first is taken.
-/// A name is never similar to itself.
+/// A name is never similar to itself. Names of more than 64 letters, and candidates beyond the first thousand, are not
+/// compared.
 #[must_use]
 pub fn similar<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let length = name.chars().count();
     let allowed = match length {
-        0 => return None,
+        0 | LONGEST.. => return None,
         1..=4 => 1,
         5..=8 => 2,
         _ => 3,
     };
     let lower = name.to_lowercase();
     let mut best: Option<(usize, &str)> = None;
-    for candidate in candidates {
+    for candidate in candidates.take(MOST) {
         let other = candidate.chars().count();
         // One letter for another says nothing.
         if candidate == name || other.abs_diff(length) > allowed || (length.max(other) == 1) {

@@ -283,7 +283,7 @@ impl Writing for VariableQuery<'_, '_> {
     }
 
     fn leaf(&mut self, terms: &mut Terms, path: PathIx, time: u32, leaf: Leaf) -> Val {
-        InState { system: self.system(path), state: self.state(path, time) }.leaf(terms, &leaf)
+        InState::new(self.system(path), self.state(path, time)).leaf(terms, &leaf)
     }
 
     fn enabled(&mut self, terms: &mut Terms, path: PathIx, time: u32, action: ActionId) -> Term {

@@ -233,7 +233,7 @@ impl Builder<'_> {
         let system = self.system();
         let ranges = state.iter().zip(&system.vars);
         let mut parts: Vec<Term> = ranges.map(|(value, var)| in_range(terms, value, &var.ty)).collect();
-        parts.push(translate(terms, &system.init, &mut InState { system, state }).truth());
+        parts.push(translate(terms, &system.init, &mut InState::new(system, state)).truth());
         terms.and(&parts)
     }
 

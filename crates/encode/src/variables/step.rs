@@ -1,7 +1,7 @@
 //! What the commands of a system ask and do, as terms over its variables.
 
 use crate::value::{Leaves, Val, compare, constant, equal, member_of, merge, same, translate};
-use hyperplan_problem::{Comparison, Expr, Leaf, System, VarId};
+use hyperplan_problem::{Comparison, Expr, LabelMemo, Leaf, System, VarId};
 use hyperplan_smt::{Term, Terms};
 use hyperplan_space::{Command, Commands, Guard, Listed, NewValue, bounds};
 
@@ -49,7 +49,7 @@ fn each(
     state: &[Val],
     between: Between<'_>,
 ) -> Vec<Term> {
-    let mut leaves = InState { system, state };
+    let mut leaves = InState::new(system, state);
     let absorbing = translate(terms, &system.absorb, &mut leaves).truth();
     let mut enabled = Vec::with_capacity(commands.all.len());
     for command in &commands.all {
@@ -90,7 +90,7 @@ pub(super) fn halted(
     state: &[Val],
     enabled: &[Term],
 ) -> Term {
-    let mut leaves = InState { system, state };
+    let mut leaves = InState::new(system, state);
     let mut parts = Vec::with_capacity(commands.all.len());
     for (command, &possible) in commands.all.iter().zip(enabled) {
         let mut unchanged = Vec::new();
@@ -137,7 +137,7 @@ pub(super) fn after(
     match command.updates.iter().find(|(updated, _)| *updated == var) {
         None => state[at].clone(),
         Some((_, NewValue::Is(value) | NewValue::OneOf { value, .. })) => {
-            translate(terms, value, &mut InState { system, state })
+            translate(terms, value, &mut InState::new(system, state))
         }
         Some((_, NewValue::Between { .. })) => inputs[at].clone(),
     }
@@ -166,6 +166,13 @@ fn follow(terms: &mut Terms, from: &Val, table: &Listed) -> Val {
 pub(super) struct InState<'a> {
     pub(super) system: &'a System,
     pub(super) state: &'a [Val],
+    labels: LabelMemo<Val>,
+}
+
+impl<'a> InState<'a> {
+    pub(super) fn new(system: &'a System, state: &'a [Val]) -> Self {
+        InState { system, state, labels: LabelMemo::default() }
+    }
 }
 
 impl Leaves<Leaf> for InState<'_> {
@@ -173,9 +180,30 @@ impl Leaves<Leaf> for InState<'_> {
         match *leaf {
             Leaf::Var(v) => self.state[usize::from(v)].clone(),
             Leaf::Label(l) => {
-                let system = self.system;
-                translate(terms, &system.labels[l].expr, self)
+                let state = self.state;
+                self.labels.find(self.system, l, &mut |expr, labels| {
+                    translate(terms, expr, &mut Labelled { state, labels })
+                })
             }
+        }
+    }
+
+    fn whole(&mut self, _: &mut Terms, _: &Expr<Leaf>) -> Option<Val> {
+        None
+    }
+}
+
+/// The leaves of a label in a state, where the labels that it reads are known.
+struct Labelled<'a> {
+    state: &'a [Val],
+    labels: &'a LabelMemo<Val>,
+}
+
+impl Leaves<Leaf> for Labelled<'_> {
+    fn leaf(&mut self, _: &mut Terms, leaf: &Leaf) -> Val {
+        match *leaf {
+            Leaf::Var(v) => self.state[usize::from(v)].clone(),
+            Leaf::Label(l) => self.labels.known(l).unwrap_or(Val::Bool(Term::FALSE)),
         }
     }
 

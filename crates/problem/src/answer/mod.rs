@@ -5,7 +5,7 @@
 
 mod witness;
 
-pub use witness::{WitnessError, to_strategy, to_witness, write_state};
+pub use witness::{StateFault, WitnessError, to_strategy, to_witness, write_state};
 
 use crate::names::names;
 #[cfg(test)]
@@ -264,7 +264,9 @@ pub struct WitnessPath {
     pub system: String,
     /// The actions taken.
     pub actions: Vec<String>,
-    /// The states passed, from time 0: the value of each variable.
+    /// The states passed, from time 0: the value of each variable. When reading, the first alone or none where the
+    /// actions decide the others.
+    #[serde(default)]
     pub states: Vec<Ordered<Scalar>>,
 }
 

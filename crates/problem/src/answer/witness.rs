@@ -8,12 +8,111 @@ use crate::objective::Objective;
 use crate::problem::Problem;
 use crate::strategy::{Strategy, Trace};
 use crate::system::System;
+use hyperplan_syntax::similar;
 use thiserror::Error;
 
-/// Why a witness is none for an objective of a problem. Places are written as in `path p, state 3`.
+/// Why a witness is none for an objective of a problem. Positions of actions and states count from 0.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{0}")]
-pub struct WitnessError(String);
+pub enum WitnessError {
+    /// A path stands in it twice.
+    #[error("path {0} is given twice")]
+    Twice(String),
+    /// A path of the leading block is missing.
+    #[error("path {0} is missing")]
+    Missing(String),
+    /// The objective has no such path.
+    #[error("objective {objective} has no path `{path}`; a strategy for it gives {expected}")]
+    NoPath {
+        /// The objective.
+        objective: String,
+        /// What was given.
+        path: String,
+        /// The paths of its leading block.
+        expected: String,
+    },
+    /// A path that is no part of a strategy.
+    #[error("path {path} is quantified after a change of quantifier; a strategy gives {expected} only")]
+    NotLeading {
+        /// What was given.
+        path: String,
+        /// The paths of the leading block.
+        expected: String,
+    },
+    /// The path is said to be one of another system.
+    #[error("path {path} is one of system {system}, not of `{given}`")]
+    System {
+        /// The path.
+        path: String,
+        /// Its system.
+        system: String,
+        /// What was given.
+        given: String,
+    },
+    /// Neither a state before and after each action, nor the first alone, nor none.
+    #[error(
+        "path {path} has {actions} actions and {states} states; there must be one more state than actions"
+    )]
+    Lengths {
+        /// The path.
+        path: String,
+        /// How many actions.
+        actions: usize,
+        /// How many states.
+        states: usize,
+    },
+    /// The system has no such action.
+    #[error("path {path}, action {step}: system {system} has no action `{action}`{hint}")]
+    Action {
+        /// The path.
+        path: String,
+        /// The action's position.
+        step: usize,
+        /// The system.
+        system: String,
+        /// What was given.
+        action: String,
+        /// Empty, or what was probably meant.
+        hint: String,
+    },
+    /// No state of the system.
+    #[error("path {path}, state {step}: {fault}")]
+    State {
+        /// The path.
+        path: String,
+        /// The state's position.
+        step: usize,
+        /// What is wrong with it.
+        fault: StateFault,
+    },
+}
+
+/// Why something is no state of a system.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum StateFault {
+    /// The system has no such variable.
+    #[error("system {system} has no variable `{variable}`{hint}")]
+    Unknown {
+        /// The system.
+        system: String,
+        /// What was given.
+        variable: String,
+        /// Empty, or what was probably meant.
+        hint: String,
+    },
+    /// A variable has no value.
+    #[error("variable {0} is missing")]
+    Missing(String),
+    /// A value is not one of the variable's type.
+    #[error("{variable} is {expected}, not {value}")]
+    Value {
+        /// The variable.
+        variable: String,
+        /// Its type, in words.
+        expected: String,
+        /// What was given.
+        value: String,
+    },
+}
 
 /// A strategy in the names of the problem.
 #[must_use]
@@ -54,7 +153,8 @@ fn write_value(ty: &Type, value: Value) -> Scalar {
 }
 
 /// The strategy that a witness describes, its traces in the order of the leading block. Whether they are paths of
-/// their systems is for the checker to say.
+/// their systems is for the checker to say. A path may be given by its actions, with its first state or with none: then
+/// its trace has no others, for the checker to find.
 ///
 /// # Errors
 /// If names, counts or types do not fit the objective.
@@ -68,12 +168,12 @@ pub fn to_strategy(
     for given in witness {
         let path = find_path(objective, &leading, &given.path)?;
         if traces.iter().any(|t| t.path == path) {
-            return Err(WitnessError(format!("path {} is given twice", given.path)));
+            return Err(WitnessError::Twice(given.path.clone()));
         }
         traces.push(read_trace(problem, &problem.systems[objective.paths[path].system], path, given)?);
     }
     if let Some(missing) = leading.iter().find(|p| traces.iter().all(|t| t.path != **p)) {
-        return Err(WitnessError(format!("path {} is missing", objective.paths[*missing].name)));
+        return Err(WitnessError::Missing(objective.paths[*missing].name.clone()));
     }
     traces.sort_by_key(|t| t.path);
     Ok(Strategy { traces })
@@ -85,15 +185,14 @@ fn find_path(objective: &Objective, leading: &[PathId], name: &str) -> Result<Pa
         names.join(", ")
     };
     match objective.path(name) {
-        None => Err(WitnessError(format!(
-            "objective {} has no path `{name}`; a strategy for it gives {}",
-            objective.name,
-            expected()
-        ))),
-        Some(path) if !leading.contains(&path) => Err(WitnessError(format!(
-            "path {name} is quantified after a change of quantifier; a strategy gives {} only",
-            expected()
-        ))),
+        None => Err(WitnessError::NoPath {
+            objective: objective.name.clone(),
+            path: name.to_owned(),
+            expected: expected(),
+        }),
+        Some(path) if !leading.contains(&path) => {
+            Err(WitnessError::NotLeading { path: name.to_owned(), expected: expected() })
+        }
         Some(path) => Ok(path),
     }
 }
@@ -104,46 +203,51 @@ fn read_trace(
     path: PathId,
     given: &WitnessPath,
 ) -> Result<Trace, WitnessError> {
-    let name = &given.path;
-    let error = |what: String| WitnessError(format!("path {name}{what}"));
+    let name = || given.path.clone();
     if !given.system.is_empty() && given.system != system.name {
-        return Err(error(format!(" is one of system {}, not of `{}`", system.name, given.system)));
+        let (system, given) = (system.name.clone(), given.system.clone());
+        return Err(WitnessError::System { path: name(), system, given });
     }
     let (actions, states) = (given.actions.len(), given.states.len());
-    if states != actions + 1 {
-        let rule = "there must be one more state than actions";
-        return Err(error(format!(" has {actions} actions and {states} states; {rule}")));
+    if states > 1 && states != actions + 1 {
+        return Err(WitnessError::Lengths { path: name(), actions, states });
     }
     let actions = given.actions.iter().enumerate();
-    let actions = actions
-        .map(|(t, a)| read_action(problem, system, a).map_err(|what| error(format!(", action {t}: {what}"))));
+    let actions = actions.map(|(step, action)| {
+        read_action(problem, system, action).ok_or_else(|| WitnessError::Action {
+            path: name(),
+            step,
+            system: system.name.clone(),
+            action: action.clone(),
+            hint: hint(action, system.actions.iter().map(|&a| problem.actions[a].as_str())),
+        })
+    });
     let states = given.states.iter().enumerate();
-    let states =
-        states.map(|(t, s)| read_state(system, s).map_err(|what| error(format!(", state {t}: {what}"))));
+    let states = states.map(|(step, state)| {
+        read_state(system, state).map_err(|fault| WitnessError::State { path: name(), step, fault })
+    });
     Ok(Trace { path, actions: actions.collect::<Result<_, _>>()?, states: states.collect::<Result<_, _>>()? })
 }
 
-/// The action of that name, or why there is none.
-fn read_action(problem: &Problem, system: &System, name: &str) -> Result<ActionId, String> {
-    let found = system.actions.iter().copied().find(|&a| problem.actions[a] == name);
-    found.ok_or_else(|| {
-        let hint = hint(name, system.actions.iter().map(|&a| problem.actions[a].as_str()));
-        format!("system {} has no action `{name}`{hint}", system.name)
-    })
+/// The action of that name.
+fn read_action(problem: &Problem, system: &System, name: &str) -> Option<ActionId> {
+    system.actions.iter().copied().find(|&a| problem.actions[a] == name)
 }
 
-/// The state, or why it is none.
-fn read_state(system: &System, given: &Ordered<Scalar>) -> Result<State, String> {
+fn read_state(system: &System, given: &Ordered<Scalar>) -> Result<State, StateFault> {
     if let Some((name, _)) = given.0.iter().find(|(name, _)| system.var(name).is_none()) {
         let hint = hint(name, system.vars.iter().map(|v| v.name.as_str()));
-        return Err(format!("system {} has no variable `{name}`{hint}", system.name));
+        return Err(StateFault::Unknown { system: system.name.clone(), variable: name.clone(), hint });
     }
     let crash: Option<VarId> = system.map.as_ref().and_then(|m| m.crash);
     let read = |(id, var): (VarId, &crate::system::Var)| match given.get(&var.name) {
         None if crash == Some(id) => Ok(Value::Bool(false)),
-        None => Err(format!("variable {} is missing", var.name)),
-        Some(value) => read_value(&var.ty, value)
-            .ok_or_else(|| format!("{} is {}, not {value}", var.name, type_in_words(&var.ty))),
+        None => Err(StateFault::Missing(var.name.clone())),
+        Some(value) => read_value(&var.ty, value).ok_or_else(|| StateFault::Value {
+            variable: var.name.clone(),
+            expected: type_in_words(&var.ty),
+            value: value.to_string(),
+        }),
     };
     system.vars.iter_enumerated().map(read).collect()
 }
@@ -186,13 +290,7 @@ fn type_in_words(ty: &Type) -> String {
 }
 
 fn hint<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
-    let near = known.map(|k| (strsim::damerau_levenshtein(name, k), k)).min();
-    match near {
-        Some((distance, k)) if distance <= 2 && distance < k.chars().count() => {
-            format!("; did you mean `{k}`?")
-        }
-        _ => String::new(),
-    }
+    similar(name, known).map_or_else(String::new, |meant| format!("; did you mean `{meant}`?"))
 }
 
 #[cfg(test)]

@@ -304,7 +304,7 @@ impl Reader<'_, '_> {
                 self.error(Diagnostic::error("bad-graph", span, message).with_help(help));
                 continue;
             }
-            labels.push(Label { name: text, expr: one_of(known), span });
+            labels.push(Label { name: text, expr: one_of(known), nested: false, span });
         }
         labels
     }

@@ -17,8 +17,12 @@ pub(super) fn sort(mut labels: Vec<Label>, diagnostics: &mut Diagnostics) -> (Ve
     if let Some(diagnostic) = cyclic("label", "cyclic-label", order.cycle.iter().map(named).collect()) {
         diagnostics.push(diagnostic);
     }
+    for (label, reads) in labels.iter_mut().zip(&reads) {
+        label.nested = !reads.is_empty();
+    }
     for label in &order.stuck {
         labels[*label].expr = Expr::FALSE;
+        labels[*label].nested = false;
     }
     let order: Vec<usize> = order.sorted.into_iter().chain(order.stuck).collect();
     let mut new = vec![LabelId(0); labels.len()];
@@ -38,7 +42,12 @@ fn reorder(labels: Vec<Label>, order: &[usize], new: &[LabelId]) -> Vec<Label> {
     };
     let moved = |old: &usize| {
         let label = &labels[*old];
-        Label { name: label.name.clone(), expr: label.expr.map(&mut renumber), span: label.span }
+        Label {
+            name: label.name.clone(),
+            expr: label.expr.map(&mut renumber),
+            nested: label.nested,
+            span: label.span,
+        }
     };
     order.iter().map(moved).collect()
 }

@@ -196,7 +196,7 @@ fn lower_labels(cx: &mut StateContext, ast: &ast::System, mut labels: Vec<Label>
     }
     for (name, body) in bodies {
         let expr = truth(cx, body).unwrap_or(Expr::FALSE);
-        labels.push(Label { name: name.name.clone(), expr, span: name.span });
+        labels.push(Label { name: name.name.clone(), expr, nested: false, span: name.span });
     }
     let (labels, new) = labels::sort(labels, cx.diagnostics);
     for (leaf, _) in cx.names.values_mut() {

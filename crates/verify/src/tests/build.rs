@@ -34,7 +34,8 @@ pub(crate) fn system(n: i64, actions: u32, edges: &[(i64, u32, i64)], init: &[i6
         clauses: clauses.collect(),
         edges: None,
         init: Expr::Or(init.iter().map(|&i| is(Leaf::Var(S), i)).collect()),
-        labels: vec![Label { name: "zero".into(), expr: is(Leaf::Var(S), 0), span: span() }].into(),
+        labels: vec![Label { name: "zero".into(), expr: is(Leaf::Var(S), 0), nested: false, span: span() }]
+            .into(),
         absorb: Expr::FALSE,
         observe: Vec::new(),
         map: None,

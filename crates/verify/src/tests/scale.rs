@@ -31,7 +31,7 @@ fn grid(n: i64) -> System {
         generated: true,
     };
     let var = |name: &str| Var { name: name.into(), ty: Type::Range { lo: 0, hi: n - 1 }, span: span() };
-    let label = |name: &str, expr| Label { name: name.into(), expr, span: span() };
+    let label = |name: &str, expr| Label { name: name.into(), expr, nested: false, span: span() };
     System {
         name: "Grid".into(),
         vars: vec![var("x"), var("y")].into(),
