@@ -3,7 +3,7 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use hyperplan_family as family;
-use hyperplan_problem::answer::{Quantifiers, States};
+use hyperplan_problem::answer::{Quantifiers, States, WitnessPath};
 use std::path::PathBuf;
 
 /// Plans robot motion from objectives that relate several paths at once.
@@ -346,12 +346,11 @@ pub(crate) struct Check {
 pub(crate) struct Verify {
     #[command(flatten)]
     pub(crate) problem: Problem,
-    /// A strategy, as `solve --save` and `solve --format json` write it; `-` is standard input
-    #[arg(value_name = "STRATEGY.json", required_unless_present = "model", conflicts_with = "model")]
-    pub(crate) strategy: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) plan: Plan,
     /// What a solver printed for a query that `emit` wrote: its model, by (get-model) or (get-value (...));
     /// `-` is standard input
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with = "Plan", required_unless_present = "Plan")]
     pub(crate) model: Option<PathBuf>,
     /// Saves the strategy that the model describes, as JSON
     #[arg(long, value_name = "FILE.json", requires = "model")]
@@ -362,13 +361,24 @@ pub(crate) struct Verify {
     pub(crate) output: Output,
 }
 
+/// A strategy of the user's.
+#[derive(Debug, Args)]
+#[group(multiple = false)]
+pub(crate) struct Plan {
+    /// A strategy, as `solve --save` and `solve --format json` write it; `-` is standard input
+    #[arg(value_name = "STRATEGY.json")]
+    pub(crate) strategy: Option<PathBuf>,
+    /// A strategy by its actions, `p=up,up,right`, once for each path; the states follow from them
+    #[arg(long, value_name = "PATH=ACTION,...", value_parser = path_of_actions)]
+    pub(crate) actions: Vec<WitnessPath>,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct Plot {
     #[command(flatten)]
     pub(crate) problem: Problem,
-    /// A strategy, as `solve --save` and `solve --format json` write it; `-` is standard input
-    #[arg(value_name = "STRATEGY.json")]
-    pub(crate) strategy: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) plan: Plan,
     #[command(flatten)]
     pub(crate) selection: Selection,
     /// An .svg (or .txt) file; without it, text on standard output
@@ -489,6 +499,21 @@ fn setting(text: &str) -> Result<(String, String), String> {
         }
         _ => Err("expected NAME=VALUE, such as T=8".to_owned()),
     }
+}
+
+/// A path by its actions.
+fn path_of_actions(text: &str) -> Result<WitnessPath, String> {
+    let expected = || "expected PATH=ACTION,ACTION,..., such as p=up,up,right".to_owned();
+    let (path, actions) = text.split_once('=').ok_or_else(expected)?;
+    let (path, actions) = (path.trim().to_owned(), actions.trim());
+    if path.is_empty() {
+        return Err(expected());
+    }
+    let actions = match actions {
+        "" => Vec::new(),
+        some => some.split(',').map(|action| action.trim().to_owned()).collect(),
+    };
+    Ok(WitnessPath { path, system: String::new(), actions, states: Vec::new() })
 }
 
 /// The most values of a range.

@@ -8,6 +8,7 @@ use crate::report;
 use hyperplan_problem::answer::{StrategyFile, to_strategy};
 use hyperplan_problem::{Loader, Lowered, Objective, Overrides, Problem, Strategy, Value, lower, read};
 use hyperplan_syntax::{SourceMap, Span, ast};
+use hyperplan_verify::{Budget, complete};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -115,6 +116,9 @@ impl Loader for Beside {
     }
 }
 
+/// Where strategy files are described.
+const DESCRIBED: &str = "docs/strategies.md says what strategies look like";
+
 /// A strategy file.
 pub(crate) struct Given {
     /// The file as it was named.
@@ -123,13 +127,23 @@ pub(crate) struct Given {
 }
 
 impl Given {
+    /// What the user gave, if anything.
+    pub(crate) fn of(plan: &args::Plan) -> Result<Option<Given>> {
+        if let Some(file) = &plan.strategy {
+            return Given::read(file).map(Some);
+        }
+        let answer = StrategyFile { objective: None, verdict: None, witness: Some(plan.actions.clone()) };
+        let given = Given { name: "--actions".to_owned(), answers: vec![answer] };
+        Ok((!plan.actions.is_empty()).then_some(given))
+    }
+
     /// Reads a strategy file.
-    pub(crate) fn read(path: &Path) -> Result<Given> {
+    fn read(path: &Path) -> Result<Given> {
         let name = files::name(path);
         let answers = StrategyFile::read_all(&read_source(path)?)
-            .map_err(|e| Failure::input(format_args!("{name} is no strategy: {e}")))?;
+            .map_err(|e| Failure::input(format_args!("{name} is no strategy: {e}; {DESCRIBED}")))?;
         if answers.is_empty() {
-            return Err(Failure::input(format_args!("{name} is no strategy: it is empty")));
+            return Err(Failure::input(format_args!("{name} is no strategy: it is empty; {DESCRIBED}")));
         }
         Ok(Given { name, answers })
     }
@@ -140,7 +154,7 @@ impl Given {
         loaded: &'a Loaded,
         name: Option<&str>,
     ) -> Result<Vec<(&'a Objective, Strategy)>> {
-        let failure = |message: String| Failure::input(format_args!("{}: {message}", self.name));
+        let failure = |message: String| Failure::input(format_args!("{}: {message}; {DESCRIBED}", self.name));
         let wanted = name.filter(|n| *n != "all");
         let fits = |answer: &&StrategyFile| match (wanted, &answer.objective) {
             (Some(wanted), Some(own)) => wanted == own,
@@ -156,8 +170,11 @@ impl Given {
             let Some(witness) = &answer.witness else {
                 return Err(failure(format!("there is no witness for objective {}", objective.name)));
             };
-            let strategy =
-                to_strategy(&loaded.problem, objective, witness).map_err(|e| failure(e.to_string()))?;
+            let problem = &loaded.problem;
+            let mut strategy =
+                to_strategy(problem, objective, witness).map_err(|e| failure(e.to_string()))?;
+            complete(problem, objective, &mut strategy, &Budget::default())
+                .map_err(|open| failure(open.describe(problem, objective)))?;
             found.push((objective, strategy));
         }
         match (found.is_empty(), wanted) {

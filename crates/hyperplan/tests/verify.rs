@@ -66,6 +66,51 @@ fn no_more_than_a_witness_is_needed() {
 }
 
 #[test]
+fn states_follow_from_actions() {
+    let verify = |objective, actions: &[&str]| {
+        let actions = actions.iter().flat_map(|path| ["--actions", path]);
+        let arguments = ["verify", "rooms.hp", "--objective", objective].into_iter().chain(actions);
+        hyperplan(&arguments.collect::<Vec<_>>())
+    };
+    let status = |objective, actions: &[&str]| verify(objective, actions).status;
+    // Its start is the objective's, its end absorbs: the plan is as long as it has to be.
+    assert_eq!(verify("sp", &["p=up,right"]).stdout, "sp: the strategy holds, verified by search\n");
+    assert_eq!(status("ar", &["p=up,right"]), 1);
+    assert_eq!(status("iso", &["p=up, right", "q=up,right"]), 2, "q may start in any other room");
+    let open = verify("iso", &["p=up,right", "q=up,right"]).stderr;
+    assert!(open.contains("path q can start in "), "{open}");
+    assert!(open.contains("docs/strategies.md"), "{open}");
+    // Not at its goal, the plan cannot be continued.
+    assert!(verify("sp", &["p=up"]).stderr.contains("path p has 1 steps, but the objective needs 6"));
+    assert!(verify("sp", &["p=up,rigth"]).stderr.contains("did you mean `right`?"));
+    assert!(verify("sp", &["=up"]).stderr.contains("expected PATH=ACTION,ACTION,..."));
+}
+
+#[test]
+fn open_choices_are_named() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let problem = folder.path().join("lift.hp");
+    let system = "system Lift { state at: 0..3; action up, slip; on up { at' = at + 1; } \
+                  on slip { at' in {at, at + 1}; } init at == 0; }";
+    let objective = "objective high { exists p. F[0,4] at[p] == 3 }";
+    std::fs::write(&problem, format!("{system}\n{objective}\n")).expect("writable");
+    let verify = |actions| hyperplan(&["verify", text(&problem), "--actions", actions]);
+    assert_eq!(verify("p=up,up,up,slip").status, 0);
+    let slip = verify("p=up,slip,up,slip");
+    assert_eq!(slip.status, 2);
+    let message = "path p, action 1: it can lead to 2 states, such as (at = 1) and (at = 2); give the states";
+    assert!(slip.stderr.contains(message), "{}", slip.stderr);
+    // What comes after may decide it: three times up are only possible from the ground.
+    assert_eq!(verify("p=slip,up,up,up").status, 0, "{}", verify("p=slip,up,up,up").stderr);
+    let given = folder.path().join("given.json");
+    let partial =
+        r#"{"witness": [{"path": "p", "actions": ["up", "up", "slip", "slip"], "states": [{"at": 1}]}]}"#;
+    std::fs::write(&given, partial).expect("writable");
+    let run = hyperplan(&["verify", text(&problem), text(&given)]);
+    assert_eq!((run.status, run.stdout.contains("does not start in an initial state")), (1, true), "{run:?}");
+}
+
+#[test]
 fn a_detour_is_not_the_shortest_path() {
     let saved = Saved::new("sp");
     let detour = r#"{"objective": "sp", "witness": [{"path": "p", "actions": ["right", "right", "up", "up", "up", "up"],
@@ -103,7 +148,11 @@ fn what_is_no_strategy_is_bad_input() {
         (r#"{"witness": null, "objective": "sp"}"#, "no witness"),
         (r#"{"witness": [], "objective": "sp"}"#, "path p is missing"),
         (r#"{"witness": [], "objective": "none"}"#, "no objective `none`"),
-        (r#"{"witness": [{"path": "p", "actions": [], "states": []}], "objective": "sp"}"#, "one more state"),
+        (
+            r#"{"witness": [{"path": "p", "actions": [], "states": [{"x": 0, "y": 0}, {"x": 0, "y": 1}]}], "objective": "sp"}"#,
+            "one more state",
+        ),
+        (r#"{"witness": [{"path": "p", "actions": [], "states": []}], "objective": "sp"}"#, "needs 6"),
         (
             r#"{"witness": [{"path": "p", "actions": [], "states": [{"x": 7, "y": 0}]}], "objective": "sp"}"#,
             "0..2",

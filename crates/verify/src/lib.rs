@@ -56,6 +56,7 @@ mod atoms;
 mod check;
 mod domain;
 mod eval;
+mod follow;
 mod graph;
 mod history;
 mod horizon;
@@ -63,6 +64,7 @@ mod initial;
 mod joint;
 mod layer;
 mod level;
+mod outcomes;
 mod progress;
 mod recent;
 mod report;
@@ -78,6 +80,8 @@ mod valuation;
 mod value;
 
 pub use check::{check, decide};
+pub use follow::{Open, complete};
+pub use outcomes::holds_for_all_outcomes;
 pub use report::{Budget, Check, Defeat, Error, Reached};
 
 #[cfg(doc)]

@@ -14,7 +14,7 @@ pub(crate) fn run(args: &args::Plot, out: &mut Output) -> Result {
     }
     let loaded = Loaded::read(&args.problem, out)?;
     let wanted = args.selection.objective.as_deref();
-    let given = args.strategy.as_deref().map(Given::read).transpose()?;
+    let given = Given::of(&args.plan)?;
     let strategies = match &given {
         Some(given) => given.strategies(&loaded, wanted)?,
         None => Vec::new(),

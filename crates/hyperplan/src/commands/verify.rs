@@ -19,9 +19,8 @@ use std::path::Path;
 pub(crate) fn run(args: &args::Verify, out: &mut Output) -> Result {
     let loaded = Loaded::read(&args.problem, out)?;
     let name = args.selection.objective.as_deref();
-    let (given, strategies) = match (&args.strategy, &args.model) {
-        (Some(file), _) => {
-            let given = Given::read(file)?;
+    let (given, strategies) = match (Given::of(&args.plan)?, &args.model) {
+        (Some(given), _) => {
             let strategies = given.strategies(&loaded, name)?;
             (given.name, strategies)
         }
