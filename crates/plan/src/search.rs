@@ -9,6 +9,7 @@ use crate::oracle::{Account, Oracle, Stop};
 use crate::prepare::{decided, is_existential, no_dead_ends, without_paths};
 use hyperplan_encode::{self as encode, Encoder, Graphs};
 use hyperplan_problem::{Objective, PathId, Problem, Strategy};
+use hyperplan_verify::{Budget, holds_for_all_outcomes};
 use std::time::Instant;
 
 /// Decides an objective with one solver; systems that were enumerated before are not enumerated again. Where the choice
@@ -128,7 +129,10 @@ fn strategy(encoder: &Encoder<'_>, known: &Assignment) -> Strategy {
     Strategy { traces: objective.leading_block().into_iter().filter_map(trace).collect() }
 }
 
-/// Says of which paths of a strategy the actions might have had other outcomes.
+/// What it may cost to find that a note about outcomes is not called for.
+const OUTCOMES: Budget = Budget { states: 100_000, entries: 1_000_000, moves: 5_000_000 };
+
+/// Says of which paths of a strategy the actions might have had other outcomes, unless the objective holds for these too.
 fn picked_outcomes(encoder: &Encoder<'_>, known: &Assignment) -> Vec<Note> {
     let objective = encoder.objective;
     if !is_existential(objective) {
@@ -137,6 +141,14 @@ fn picked_outcomes(encoder: &Encoder<'_>, known: &Assignment) -> Vec<Note> {
     let picks = |path: &PathId| {
         known[usize::from(*path)].as_ref().is_some_and(|known| encoder.writer.picks_outcomes(*path, known))
     };
-    let note = |path: PathId| Note::PicksOutcomes { path: objective.paths[path].name.clone() };
-    objective.leading_block().into_iter().filter(picks).map(note).collect()
+    let picking: Vec<PathId> = objective.leading_block().into_iter().filter(picks).collect();
+    if picking.is_empty() {
+        return Vec::new();
+    }
+    let strategy = strategy(encoder, known);
+    if let Ok(Some(true)) = holds_for_all_outcomes(encoder.problem, objective, &strategy, &picking, &OUTCOMES)
+    {
+        return Vec::new();
+    }
+    picking.into_iter().map(|path| Note::PicksOutcomes { path: objective.paths[path].name.clone() }).collect()
 }

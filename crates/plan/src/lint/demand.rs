@@ -1,7 +1,7 @@
 //! What is demanded of every path although some does not meet it: an assumption that was written as a conjunct.
 
 use super::question::Asker;
-use super::rewrite::{Builder, conjuncts, leaves};
+use super::rewrite::{Builder, Replaced, conjuncts, leaves};
 use hyperplan_problem::{Formula, FormulaId, PathId, Quantifier};
 use hyperplan_syntax::{Diagnostic, Span};
 
@@ -14,7 +14,7 @@ pub(super) fn lint(asker: &mut Asker<'_>, found: &mut Vec<Diagnostic>) {
     if objective.paths.iter().all(|p| p.quantifier == Quantifier::Forall) {
         return;
     }
-    for part in conjuncts(formula, formula.root()) {
+    for part in conjuncts(formula, formula.root(), &Replaced::new()) {
         if asker.is_over(formula.spans[part]) {
             return;
         }

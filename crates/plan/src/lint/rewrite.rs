@@ -155,13 +155,13 @@ pub(super) fn above(formula: &Formula, id: FormulaId) -> TiVec<FormulaId, bool> 
     above
 }
 
-/// The conjuncts of a formula.
-pub(super) fn conjuncts(formula: &Formula, root: FormulaId) -> Vec<FormulaId> {
+/// The conjuncts of a formula; what is replaced as a whole is one.
+pub(super) fn conjuncts(formula: &Formula, root: FormulaId, replaced: &Replaced) -> Vec<FormulaId> {
     let mut found = Vec::new();
     let mut stack = vec![root];
     while let Some(id) = stack.pop() {
         match &formula.nodes[id] {
-            Node::And(ids) => stack.extend(ids.iter().rev()),
+            Node::And(ids) if !replaced.contains_key(&id) => stack.extend(ids.iter().rev()),
             _ => found.push(id),
         }
     }

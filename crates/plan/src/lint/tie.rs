@@ -5,7 +5,7 @@
 //! hold until its path takes the other's action where it cannot?
 
 use super::question::{Asker, free};
-use super::rewrite::conjuncts;
+use super::rewrite::{Replaced, conjuncts};
 use super::total::{JUST_STUCK, enabled, is, total};
 use hyperplan_problem::{
     Comparison, Expr, Formula, FormulaId, Interval, Leaf, Mode, Node, Objective, PathId, PathLeaf, Problem,
@@ -154,7 +154,7 @@ fn assumptions(objective: &Objective, tie: &Tie) -> Vec<FormulaId> {
     let formula = &objective.formula;
     let above = super::rewrite::above(formula, tie.atom);
     let mut parts = Vec::new();
-    for part in conjuncts(formula, formula.root()) {
+    for part in conjuncts(formula, formula.root(), &Replaced::new()) {
         if !above[part] {
             let mut reads = false;
             super::rewrite::leaves(formula, part, &mut |l| reads |= l.paths().contains(&Some(tie.follower)));

@@ -21,6 +21,7 @@ use hyperplan_problem::{Formula, FormulaId, Node, Quantifier};
 use hyperplan_syntax::ast::BinaryOp;
 use hyperplan_syntax::operator::Operator;
 use hyperplan_syntax::{Diagnostic, Span};
+use rustc_hash::FxHashMap;
 use typed_index_collections::TiVec;
 
 /// Adds what is vacuous; whether the formula as a whole holds always, or never.
@@ -32,6 +33,7 @@ pub(super) fn lint(asker: &mut Asker<'_>, found: &mut Vec<Diagnostic>) -> bool {
         replaced: Replaced::new(),
         polarity: polarities(formula),
         nested: nested(formula),
+        places: places(formula),
         visited: formula.nodes.iter().map(|_| false).collect(),
         valid: false,
     };
@@ -39,7 +41,7 @@ pub(super) fn lint(asker: &mut Asker<'_>, found: &mut Vec<Diagnostic>) -> bool {
         found.push(search.impossible(asker));
         return true;
     }
-    search.valid = conjuncts(formula, root)
+    search.valid = conjuncts(formula, root, &Replaced::new())
         .into_iter()
         .all(|part| search.part_possible(asker, part, false) == Some(false));
     let exists = asker.objective.paths.iter().any(|p| p.quantifier == Quantifier::Exists);
@@ -99,6 +101,22 @@ fn nested(formula: &Formula) -> TiVec<FormulaId, bool> {
     all
 }
 
+/// How many subformulas a place in the text stands for; those inside one of the same place do not count.
+fn places(formula: &Formula) -> FxHashMap<Span, u32> {
+    let mut outer: TiVec<FormulaId, bool> = formula.nodes.iter().map(|_| false).collect();
+    outer[formula.root()] = true;
+    for (id, node) in formula.nodes.iter_enumerated() {
+        for child in node.children() {
+            outer[child] |= formula.spans[child] != formula.spans[id];
+        }
+    }
+    let mut places = FxHashMap::default();
+    for id in outer.iter_enumerated().filter(|(_, outer)| **outer).map(|(id, _)| id) {
+        *places.entry(formula.spans[id]).or_default() += 1;
+    }
+    places
+}
+
 /// Why a replacement is tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Role {
@@ -129,6 +147,8 @@ struct Vacuity<'f> {
     polarity: TiVec<FormulaId, Polarity>,
     /// Whether a subformula is under a temporal operator.
     nested: TiVec<FormulaId, bool>,
+    /// How many subformulas each place in the text stands for.
+    places: FxHashMap<Span, u32>,
     visited: TiVec<FormulaId, bool>,
     /// Whether the formula holds of all paths.
     valid: bool,
@@ -149,7 +169,7 @@ impl Vacuity<'_> {
     /// The formula is unsatisfiable: the first part that is so alone, or all of it.
     fn impossible(&self, asker: &mut Asker<'_>) -> Diagnostic {
         let root = self.formula.root();
-        let parts = conjuncts(self.formula, root);
+        let parts = conjuncts(self.formula, root, &Replaced::new());
         let alone = parts.iter().find(|&&part| self.part_possible(asker, part, true) == Some(false));
         let (part, message) = match alone {
             Some(part) if *part != root => (*part, "no choice of paths satisfies this part of the objective"),
@@ -185,8 +205,11 @@ impl Vacuity<'_> {
         let roles = self.roles(id);
         for (child, role) in roles {
             tasks.push(Task::Visit(child));
-            // What one place in the text stands for as a whole is not taken apart.
-            if let Some(role) = role.filter(|_| self.formula.spans[child] != self.formula.spans[id]) {
+            // What one place in the text stands for as a whole is not taken apart: a warning that marks it is right only
+            // if all of it can be replaced.
+            let whole = self.formula.spans[child] != self.formula.spans[id]
+                && self.places.get(&self.formula.spans[child]) == Some(&1);
+            if let Some(role) = role.filter(|_| whole) {
                 tasks.push(Task::Try(child, role));
             }
         }
@@ -256,7 +279,7 @@ impl Vacuity<'_> {
         };
         let mut builder = Builder::new(self.formula);
         let root = self.formula.root();
-        let parts = conjuncts(self.formula, root);
+        let parts = conjuncts(self.formula, root, &after);
         let above = above(self.formula, id);
         let concerned: Vec<FormulaId> = parts.iter().copied().filter(|&part| above[part]).collect();
         let stronger = builder.parts(&concerned, strong);
