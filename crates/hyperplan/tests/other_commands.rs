@@ -181,12 +181,19 @@ fn a_file_to_begin_with() {
     let run = hyperplan(&["check", "-D", name]);
     assert_eq!(run.status, 0, "{}", run.stderr);
     assert_eq!(hyperplan(&["check", "--print", name]).stdout, written);
-    for (question, status) in
-        [(&["fastest"][..], 0), (&["fastest", "--set", "T=6"], 1), (&["robust"], 0), (&["hidden"], 0)]
-    {
-        let run = hyperplan(&[&["solve", name, "--objective"], question].concat());
+    for (question, status) in [(&[][..], 0), (&["--set", "T=6"], 1), (&["--minimize", "T"], 0)] {
+        let run = hyperplan(&[&["solve", name], question].concat());
         assert_eq!(run.status, status, "{question:?}: {}{}", run.stdout, run.stderr);
     }
+    // With the two objectives that stand in comments.
+    let (active, others) = written.split_once("// Two more").expect("it has two more");
+    let others = others.lines().skip(2).map(|line| line.strip_prefix("//").unwrap_or_default());
+    let others = others.take_while(|line| !line.contains("The language"));
+    let text = others.fold(active.to_owned(), |text, line| text + line + "\n");
+    let all = folder.path().join("all.hp");
+    std::fs::write(&all, text).expect("writable");
+    let run = hyperplan(&["solve", all.to_str().expect("a name in UTF-8"), "--objective", "all"]);
+    assert_eq!((run.status, run.stdout.matches(": realizable").count()), (0, 3), "{run:?}");
     // What somebody wrote meanwhile is not lost.
     let run = hyperplan(&["new", name]);
     assert_eq!((run.status, run.stderr), (2, format!("error: {name} is there already\n")));

@@ -24,6 +24,6 @@ pub(crate) fn run(args: &args::New, out: &mut Output) -> Result {
         _ => cannot_write(path, &error),
     })?;
     file.write_all(STARTER.replace("FILE", &name).as_bytes()).map_err(|error| cannot_write(path, &error))?;
-    out.remark(format_args!("note: {name} is written; now: hyperplan solve {name} --objective fastest"));
+    out.remark(format_args!("note: {name} is written; now: hyperplan solve {name}"));
     Ok(Exit::Good)
 }
