@@ -256,8 +256,8 @@ impl Vacuity<'_> {
         if self.matters(asker, id, role.value(), alone, "this part matters")? {
             return None;
         }
-        let finding = self.describe(asker, id, role);
-        self.replaced.insert(id, role.value());
+        let (finding, replaced, value) = self.describe(asker, id, role);
+        self.replaced.insert(replaced, value);
         Some(finding)
     }
 
@@ -293,23 +293,11 @@ impl Vacuity<'_> {
         }
     }
 
-    fn describe(&self, asker: &mut Asker<'_>, id: FormulaId, role: Role) -> Diagnostic {
+    /// The warning, and what may stand where if what it marks is replaced as it says: what is found afterwards has to fit.
+    fn describe(&self, asker: &mut Asker<'_>, id: FormulaId, role: Role) -> (Diagnostic, FormulaId, bool) {
         let span = self.formula.spans[id];
-        match role {
-            Role::Demand => {
-                // Of an implication that is implied it is told which side makes it so.
-                let mut place = span;
-                if let Some((antecedent, consequent)) = self.implication(id) {
-                    let what = "this antecedent is ever met";
-                    if self.matters(asker, consequent, false, false, what) == Some(false) {
-                        return never_met(self.formula.spans[antecedent]);
-                    }
-                    place = self.formula.spans[consequent];
-                }
-                let message =
-                    "this part of the objective constrains nothing: the rest of the objective implies it";
-                Diagnostic::warning("vacuous", place, message)
-            }
+        let finding = match role {
+            Role::Demand => self.superfluous(asker, id),
             Role::Alternative => {
                 let message = "this alternative makes no difference: the objective says the same without it";
                 Diagnostic::warning("useless-alternative", span, message)
@@ -318,17 +306,33 @@ impl Vacuity<'_> {
                 let implication = self.implication_of(id);
                 let antecedent = implication.map_or(span, |(_, antecedent)| self.formula.spans[antecedent]);
                 let what = "this antecedent is ever met";
-                let moot =
-                    |(implication, _)| self.matters(asker, implication, true, false, what) == Some(false);
-                if self.valid || implication.is_some_and(moot) {
-                    return never_met(antecedent);
+                let moot = |&(implication, _): &(FormulaId, FormulaId)| {
+                    self.valid || self.matters(asker, implication, true, false, what) == Some(false)
+                };
+                if let Some((implication, _)) = implication.filter(moot) {
+                    return (never_met(antecedent), implication, true);
                 }
                 let message = "this never holds where its antecedent does, so only the antecedent's failing \
                                satisfies the implication";
                 Diagnostic::warning("impossible-consequent", span, message)
                     .with_related(antecedent, "the antecedent")
             }
+        };
+        (finding, id, role.value())
+    }
+
+    /// Of an implication that is implied it is told which side makes it so.
+    fn superfluous(&self, asker: &mut Asker<'_>, id: FormulaId) -> Diagnostic {
+        let mut place = self.formula.spans[id];
+        if let Some((antecedent, consequent)) = self.implication(id) {
+            let what = "this antecedent is ever met";
+            if self.matters(asker, consequent, false, false, what) == Some(false) {
+                return never_met(self.formula.spans[antecedent]);
+            }
+            place = self.formula.spans[consequent];
         }
+        let message = "this part of the objective constrains nothing: the rest of the objective implies it";
+        Diagnostic::warning("vacuous", place, message)
     }
 
     /// The implication that a demand is, perhaps at every step.

@@ -145,7 +145,7 @@ impl<'a> PathContext<'a> {
                 | ExprKind::Iff(..)
                 | ExprKind::Unary(..)
                 | ExprKind::Binary(..) => return true,
-                ExprKind::If(_, a, b) => stack.extend([&**a, b]),
+                ExprKind::If(c, a, b) => stack.extend([&**c, a, b]),
                 ExprKind::Call(name, _) => {
                     stack.extend(self.defines.get(name.name.as_str()).map(|(define, _)| &define.body));
                 }
