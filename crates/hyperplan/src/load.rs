@@ -37,7 +37,16 @@ impl Loaded {
         start: Instant,
         out: &Output,
     ) -> Result<(Loaded, Consts)> {
-        let (lowered, sources) = Self::lower(args, text);
+        Self::of(args, Self::lower(args, text), start, out)
+    }
+
+    /// As [`Loaded::with_consts`], of what a text was found to mean.
+    pub(crate) fn of(
+        args: &args::Problem,
+        (lowered, sources): (Lowered, SourceMap),
+        start: Instant,
+        out: &Output,
+    ) -> Result<(Loaded, Consts)> {
         report::diagnostics(&sources, &lowered.diagnostics, out);
         if lowered.has_errors() {
             return Err(Failure::said());

@@ -46,9 +46,29 @@ impl<'a> Parameter<'a> {
                 format_args!("has no constant `{constant}` to minimize; it has {names}"),
             ));
         }
-        let mut base = args.clone();
-        base.set.extend(wanted.range.map(|(lo, _)| (constant.to_owned(), lo.to_string())));
-        let (loaded, consts) = Loaded::with_consts(&base, &text, start, out)?;
+        let with = |value: Option<i64>| {
+            let mut base = args.clone();
+            base.set.extend(value.map(|value| (constant.to_owned(), value.to_string())));
+            base
+        };
+        let mut range = wanted.range;
+        let mut read = Loaded::lower(&with(range.map(|(lo, _)| lo)), &text);
+        if let Some((lo, hi)) = range.filter(|_| read.0.has_errors()) {
+            // Such as 0 in `[1,T]`.
+            let fits = |value: &i64| !Loaded::lower(&with(Some(*value)), &text).0.has_errors();
+            match (lo..=hi).skip(1).take(LEFT_OUT).find(fits) {
+                Some(first) => {
+                    let values = said_range(lo, first - 1);
+                    out.remark(format_args!(
+                        "note: {constant} = {values} is left out: the file has errors with it"
+                    ));
+                    range = Some((first, hi));
+                    read = Loaded::lower(&with(Some(first)), &text);
+                }
+                None => out.remark(format_args!("note: with {constant} = {lo}:")),
+            }
+        }
+        let (loaded, consts) = Loaded::of(&with(range.map(|(lo, _)| lo)), read, start, out)?;
         let value = consts.into_iter().find(|(name, _)| name == constant).map(|(_, value)| value);
         let value = match value {
             Some(Value::Int(value)) => value,
@@ -61,7 +81,7 @@ impl<'a> Parameter<'a> {
         if !uses(&file, constant) {
             return Err(failure(args, format_args!("never uses the constant `{constant}`")));
         }
-        let range = match wanted.range {
+        let range = match range {
             Some((lo, hi)) => lo..=hi,
             None if value < 0 => {
                 let message = format_args!(
@@ -113,7 +133,7 @@ impl<'a> Parameter<'a> {
     fn said(&self, least: &Least, undecided: Option<&Why>) -> (Below, String) {
         let Least { value, proved, .. } = *least;
         let (name, first) = (self.constant, *self.range.start());
-        let values = |lo: i64, hi: i64| if lo == hi { lo.to_string() } else { format!("{lo}..{hi}") };
+        let values = said_range;
         let below = if proved == first { Below::OutOfRange } else { Below::Unrealizable };
         match (least.outcome.verdict, undecided.map(|why| &why.words)) {
             (Verdict::Realizable, Some(reason)) => {
@@ -154,6 +174,13 @@ impl<'a> Parameter<'a> {
         let lowered = load::lower_file(self.args, &self.file, &mut sources, (self.constant, value));
         (lowered, sources)
     }
+}
+
+/// So many values at the lower end of a range may be left out.
+const LEFT_OUT: usize = 100;
+
+fn said_range(lo: i64, hi: i64) -> String {
+    if lo == hi { lo.to_string() } else { format!("{lo}..{hi}") }
 }
 
 /// What came of a search for the least value.

@@ -210,3 +210,25 @@ fn what_more_time_hurts_is_not_skipped() {
         assert_eq!(found, (0, "o: realizable with T = 3, unrealizable with 0..2\n".to_owned()), "{part}");
     }
 }
+
+#[test]
+fn values_with_which_the_file_has_errors_are_left_out() {
+    let problem = |interval: &str| {
+        file(&format!(
+            "const T = 5; system S {{ state x: 0..9; action up; on up {{ x' = x + 1; }} absorb x == 9; init x == 0; }} \
+             objective o {{ exists p. F{interval} x[p] == 3 }}"
+        ))
+    };
+    for (interval, left_out) in [("[1,T]", "T = 0 is"), ("[2,T]", "T = 0..1 is"), ("[0,T]", "")] {
+        let problem = problem(interval);
+        let run = hyperplan(&["solve", text(problem.path()), "--minimize", "T=0..9"]);
+        assert_eq!(run.status, 0, "{run:?}");
+        assert!(run.stdout.starts_with("o: realizable with T = 3, unrealizable with "), "{run:?}");
+        assert!(run.stderr.contains(left_out), "{run:?}");
+        assert_eq!(run.stderr.is_empty(), left_out.is_empty(), "{run:?}");
+    }
+    // There is none: the message says for which value it is.
+    let problem = problem("[9,T]");
+    let message = refused(&[text(problem.path()), "--minimize", "T=0..4"]);
+    assert!(message.starts_with("note: with T = 0:\n") && message.contains("[9,0] is empty"), "{message}");
+}
