@@ -150,6 +150,8 @@ pub struct Map {
     pub height: u32,
     /// Obstacle cells `(x, y)`, sorted.
     pub obstacles: Vec<(u32, u32)>,
+    /// Labels that letters of the map carry, each with its letter.
+    pub letters: Vec<(String, char)>,
     /// The variable that holds the column.
     pub x: VarId,
     /// The variable that holds the row.

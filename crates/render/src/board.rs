@@ -12,7 +12,7 @@ const CELL_LIMIT: u64 = 4_000_000;
 pub struct Mark {
     /// The label.
     pub label: String,
-    /// The letter that stands for it: `S` for start, `G` for goal, else one of the label's own where free.
+    /// The letter that stands for it: the map's own, `S` for start, `G` for goal, else one of the label's name where free.
     pub letter: char,
     /// The cells, row by row from the bottom.
     pub cells: Vec<(u32, u32)>,
@@ -104,12 +104,15 @@ impl Board {
         if let Some(crash) = self.crash {
             known[usize::from(crash)] = Some(Value::Bool(false));
         }
-        // The two that every map has take their letters first.
+        let letters = system.map.as_ref().map_or(&[][..], |map| &map.letters);
+        let own = |label: &str| letters.iter().find(|(name, _)| name == label).map(|(_, letter)| *letter);
+        // The two that every map has take their letters first, then those with letters of the map.
         let mut labels: Vec<_> = system.labels.iter().collect();
         labels.sort_by_key(|l| match l.name.as_str() {
             "start" => 0,
             "goal" => 1,
-            _ => 2,
+            name if own(name).is_some() => 2,
+            _ => 3,
         });
         for label in labels {
             let mut holds = |&(x, y): &(u32, u32)| {
@@ -119,7 +122,11 @@ impl Board {
             };
             let cells: Vec<_> = free.iter().filter(|c| holds(c)).copied().collect();
             if !cells.is_empty() && cells.len() < free.len() {
-                marks.push(Mark { letter: letter(&label.name, &marks), label: label.name.clone(), cells });
+                marks.push(Mark {
+                    letter: letter(&label.name, own(&label.name), &marks),
+                    label: label.name.clone(),
+                    cells,
+                });
             }
         }
         marks
@@ -160,10 +167,10 @@ impl Board {
     }
 }
 
-/// A letter for a label that no label before it has.
-fn letter(label: &str, taken: &[Mark]) -> char {
+/// A letter for a label that no label before it has: its own on the map, or one of its name.
+fn letter(label: &str, on_map: Option<char>, taken: &[Mark]) -> char {
     let free = |c: &char| taken.iter().all(|m| m.letter != *c);
     let own = label.chars().filter(|c| c.is_ascii_alphabetic());
     let candidates = own.flat_map(|c| [c.to_ascii_uppercase(), c.to_ascii_lowercase()]);
-    candidates.chain('1'..='9').find(free).unwrap_or('+')
+    on_map.into_iter().chain(candidates).chain('1'..='9').find(free).unwrap_or('+')
 }

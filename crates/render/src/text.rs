@@ -1,6 +1,6 @@
 //! Maps for terminals.
 
-use crate::board::Board;
+use crate::board::{Board, Mark};
 use crate::{Error, Scene};
 use std::fmt::Write as _;
 
@@ -141,8 +141,8 @@ fn axis(out: &mut String, board: &Board, margin: usize, wide: bool) {
 
 /// What the letters say; `S` and `G` for start and goal need no words.
 fn legend(out: &mut String, board: &Board) {
-    let known = |label: &str| matches!(label, "start" | "goal");
-    let unknown = board.marks.iter().filter(|m| !known(&m.label));
+    let known = |mark: &Mark| matches!((mark.label.as_str(), mark.letter), ("start", 'S') | ("goal", 'G'));
+    let unknown = board.marks.iter().filter(|mark| !known(mark));
     let words: Vec<String> = unknown.map(|m| format!("{} {}", m.letter, m.label)).collect();
     if !words.is_empty() {
         let _ = writeln!(out, "{}", words.join(", "));

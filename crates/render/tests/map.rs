@@ -43,6 +43,23 @@ fn scene<'a>(problem: &'a Problem, strategy: &'a Strategy) -> Scene<'a> {
 }
 
 #[test]
+fn letters_are_those_of_the_map() {
+    let problem = problem(
+        r#"system W = grid { "A~.w" "S..." } { legend 'A' = goal; legend '~' = water; legend 'w' = water; label wet = x >= 1; }
+           objective o { exists p. start[p] & F[0,9] goal[p] }"#,
+    );
+    let scene = Scene { problem: &problem, objective: None, traces: &[] };
+    let text = text_map(scene, TextStyle::default()).expect("a map");
+    let expected = "\
+1  A  ~  W  ~
+0  S  W  W  W
+   0  1  2  3
+A goal, ~ water, W wet
+";
+    assert!(text.ends_with(expected), "{text}");
+}
+
+#[test]
 fn a_map_for_each_path() {
     let problem = problem(ROOM);
     let strategy = strategy(&problem);

@@ -106,6 +106,8 @@ pub enum SystemItem {
     Obstacle(Ident),
     /// `edge undefined|stay|crash;` (maps only)
     Edge(Ident),
+    /// `corner free|undefined|stay|crash;` (maps only)
+    Corner(Ident),
     /// `legend 'W' = water;` or `legend 'W' = #;` (maps only)
     Legend {
         /// The letter; its span has the quotes.

@@ -65,6 +65,7 @@ fn describe(item: &SystemItem) -> String {
         SystemItem::Moves(moves) => format!("moves {}", names(moves)),
         SystemItem::Obstacle(rule) => format!("obstacle {}", rule.name),
         SystemItem::Edge(rule) => format!("edge {}", rule.name),
+        SystemItem::Corner(rule) => format!("corner {}", rule.name),
         SystemItem::Legend { letter, label, .. } => {
             format!("legend {} {}", letter.text, label.as_ref().map_or("#", |label| &label.name))
         }

@@ -326,6 +326,7 @@ mod tests {
                 width: 3,
                 height: 1,
                 obstacles: Vec::new(),
+                letters: Vec::new(),
                 x: VarId(0),
                 y: VarId(0),
                 crash: Some(VarId(2)),

@@ -218,10 +218,10 @@ fn legend(ast: &ast::System, format: Format, env: &mut Env) -> Option<Legend> {
     (!failed).then_some(legend)
 }
 
-/// The `moves`, `obstacle` and `edge` items.
+/// The `moves`, `obstacle`, `edge` and `corner` items.
 fn rules(ast: &ast::System, env: &mut Env) -> Rules {
     let mut moves: Option<Vec<Move>> = None;
-    let (mut obstacle, mut edge) = (None, None);
+    let (mut obstacle, mut edge, mut corner) = (None, None, None);
     let mut seen: FxHashMap<&str, Span> = FxHashMap::default();
     for item in &ast.items {
         let (what, at) = match item {
@@ -231,6 +231,7 @@ fn rules(ast: &ast::System, env: &mut Env) -> Rules {
             },
             SystemItem::Obstacle(rule) => ("obstacle", rule),
             SystemItem::Edge(rule) => ("edge", rule),
+            SystemItem::Corner(rule) => ("corner", rule),
             _ => continue,
         };
         if let Some(first) = seen.insert(what, at.span) {
@@ -240,8 +241,10 @@ fn rules(ast: &ast::System, env: &mut Env) -> Rules {
         }
         match item {
             SystemItem::Moves(names) => moves = Some(named_moves(names, env)),
-            SystemItem::Obstacle(name) => obstacle = named_rule(name, env),
-            SystemItem::Edge(name) => edge = named_rule(name, env),
+            SystemItem::Obstacle(name) => obstacle = named_rule(name, &[], env),
+            SystemItem::Edge(name) => edge = named_rule(name, &[], env),
+            SystemItem::Corner(name) if name.name == FREE => {}
+            SystemItem::Corner(name) => corner = named_rule(name, &[FREE], env),
             _ => {}
         }
     }
@@ -249,6 +252,19 @@ fn rules(ast: &ast::System, env: &mut Env) -> Rules {
         moves: moves.filter(|m| !m.is_empty()).unwrap_or_else(|| MOVES[..4].to_vec()),
         obstacle: obstacle.unwrap_or_default(),
         edge: edge.unwrap_or_default(),
+        corner,
+        clauses_move: ast.items.iter().any(moves_itself),
+    }
+}
+
+/// Of `corner`: a diagonal move between two obstacles is one like others.
+const FREE: &str = "free";
+
+/// Whether an item is a clause that says where the robot is next.
+fn moves_itself(item: &SystemItem) -> bool {
+    match item {
+        SystemItem::On(clause) => clause.updates.iter().any(|u| matches!(u.var.name.as_str(), "x" | "y")),
+        _ => false,
     }
 }
 
@@ -271,11 +287,15 @@ fn named_moves(names: &[Ident], env: &mut Env) -> Vec<Move> {
     moves
 }
 
-fn named_rule(name: &Ident, env: &mut Env) -> Option<Rule> {
+fn named_rule(name: &Ident, others: &[&str], env: &mut Env) -> Option<Rule> {
     let rule = name.name.parse().ok();
     if rule.is_none() {
         let diagnostic = Diagnostic::error("unknown-rule", name.span, format!("no rule `{}`", name.name));
-        env.diagnostics.push(suggest(diagnostic, &name.name, Rule::ALL.map(Rule::name)));
+        env.diagnostics.push(suggest(
+            diagnostic,
+            &name.name,
+            Rule::ALL.map(Rule::name).into_iter().chain(others.iter().copied()),
+        ));
     }
     rule
 }

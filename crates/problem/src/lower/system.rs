@@ -237,6 +237,7 @@ fn lower_item(
         SystemItem::Moves(names) => only_maps(cx, kind, "moves", names.first()),
         SystemItem::Obstacle(name) => only_maps(cx, kind, "obstacle", Some(name)),
         SystemItem::Edge(name) => only_maps(cx, kind, "edge", Some(name)),
+        SystemItem::Corner(name) => only_maps(cx, kind, "corner", Some(name)),
         SystemItem::Legend { letter, span, .. } => {
             let name = Ident { name: letter.text.clone(), span: *span };
             only_maps(cx, kind, "legend", Some(&name));

@@ -10,8 +10,10 @@ use crate::token::{EQUALS, Tok, Token};
 pub(super) const TOP: &[&str] = &["const", "system", "template", "define", "objective"];
 
 /// Words that begin an item of a system.
-pub(super) const ITEMS: &[&str] =
-    &["state", "action", "on", "init", "label", "observe", "absorb", "moves", "obstacle", "edge", "legend"];
+pub(super) const ITEMS: &[&str] = &[
+    "state", "action", "on", "init", "label", "observe", "absorb", "moves", "obstacle", "edge", "corner",
+    "legend",
+];
 
 /// What a block holds, and so where its next member begins.
 #[derive(Clone, Copy, PartialEq, Eq)]

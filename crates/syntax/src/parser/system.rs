@@ -116,6 +116,7 @@ impl Parser<'_> {
             "moves" => SystemItem::Moves(self.names("a move")?),
             "obstacle" => SystemItem::Obstacle(self.name("`undefined`, `stay` or `crash`")?),
             "edge" => SystemItem::Edge(self.name("`undefined`, `stay` or `crash`")?),
+            "corner" => SystemItem::Corner(self.name("`free`, `undefined`, `stay` or `crash`")?),
             "init" => SystemItem::Init(self.expr()?),
             "absorb" => SystemItem::Absorb(self.expr()?),
             "observe" => SystemItem::Observe(self.separated(Self::expr)?),
@@ -130,7 +131,10 @@ impl Parser<'_> {
             }
         };
         let expected = match item {
-            SystemItem::Obstacle(_) | SystemItem::Edge(_) | SystemItem::Legend { .. } => "`;`",
+            SystemItem::Obstacle(_)
+            | SystemItem::Edge(_)
+            | SystemItem::Corner(_)
+            | SystemItem::Legend { .. } => "`;`",
             SystemItem::Action(_) | SystemItem::Moves(_) | SystemItem::State(_) => "`,` or `;`",
             _ => "an operator or `;`",
         };

@@ -68,9 +68,10 @@ impl Printer<'_> {
             SystemItem::State(decls) => decls.first().map(|decl| decl.name.span),
             SystemItem::Action(names) | SystemItem::Moves(names) => names.first().map(|name| name.span),
             SystemItem::Init(e) | SystemItem::Absorb(e) => Some(e.span),
-            SystemItem::Label(name, _) | SystemItem::Obstacle(name) | SystemItem::Edge(name) => {
-                Some(name.span)
-            }
+            SystemItem::Label(name, _)
+            | SystemItem::Obstacle(name)
+            | SystemItem::Edge(name)
+            | SystemItem::Corner(name) => Some(name.span),
             SystemItem::Observe(es) => es.first().map(|e| e.span),
         };
         behind.map_or(0, |span| self.source.word_before(span.start as usize))
@@ -95,6 +96,7 @@ impl Printer<'_> {
             }
             SystemItem::Obstacle(rule) => self.named("obstacle ", std::slice::from_ref(rule)),
             SystemItem::Edge(rule) => self.named("edge ", std::slice::from_ref(rule)),
+            SystemItem::Corner(rule) => self.named("corner ", std::slice::from_ref(rule)),
             SystemItem::Legend { letter, label, span } => {
                 let label = label.as_ref().map_or("#", |label| &label.name);
                 self.layout.text(format!("legend '{}' = {label}", letter.text));

@@ -25,6 +25,16 @@ pub(crate) struct GridMap {
     pub(crate) height: u32,
     /// Sorted, without repetition.
     pub(crate) obstacles: Vec<Cell>,
-    /// Labels that letters carry, in order of first mention; each with its cells, sorted.
-    pub(crate) labels: Vec<(String, Vec<Cell>)>,
+    /// Labels that letters carry, in order of first mention.
+    pub(crate) labels: Vec<Lettered>,
+}
+
+/// A label that a letter carries.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Lettered {
+    pub(crate) name: String,
+    /// The first of its letters.
+    pub(crate) letter: char,
+    /// Sorted.
+    pub(crate) cells: Vec<Cell>,
 }

@@ -16,8 +16,8 @@ const fn to(name: &'static str, dx: i64, dy: i64) -> Move {
     Move { name, dx, dy }
 }
 
-/// All moves there are; the first four are the default. A diagonal move looks only at the cell it leads to, not at
-/// the two cells that it passes between.
+/// All moves there are; the first four are the default. A diagonal move looks only at the cell that it leads to, unless
+/// `corner` has a rule for the two that it passes between.
 pub(crate) const MOVES: [Move; 9] = [
     to("up", 0, 1),
     to("down", 0, -1),

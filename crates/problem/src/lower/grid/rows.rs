@@ -1,6 +1,6 @@
 //! From rows of letters to a map.
 
-use super::{Cell, GridMap, MAX_CELLS};
+use super::{Cell, GridMap, Lettered, MAX_CELLS};
 use crate::lower::Diagnostics;
 use hyperplan_syntax::{Diagnostic, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -73,9 +73,9 @@ pub(crate) fn from_rows(
     let height = rows.len();
     let mut reader = Reader { format, legend: legend.iter().cloned().collect(), ..Reader::default() };
     // Labels of the legend exist even where no cell carries them; `start` and `goal` only where a letter says so.
-    for (_, meaning) in legend {
+    for (letter, meaning) in legend {
         if let Meaning::Labelled(label) = meaning {
-            reader.label(label);
+            reader.label(label, *letter);
         }
     }
     for (index, row) in rows.iter().enumerate() {
@@ -94,7 +94,7 @@ pub(crate) fn from_rows(
         return None;
     }
     map.obstacles.sort_unstable();
-    map.labels.iter_mut().for_each(|(_, cells)| cells.sort_unstable());
+    map.labels.iter_mut().for_each(|label| label.cells.sort_unstable());
     if map.obstacles.len() == width * height {
         diagnostics.push(Diagnostic::error("bad-map", whole, "the map has no free cell"));
         return None;
@@ -144,18 +144,18 @@ struct Reader {
     format: Format,
     legend: FxHashMap<char, Meaning>,
     obstacles: Vec<Cell>,
-    labels: Vec<(String, Vec<Cell>)>,
+    labels: Vec<Lettered>,
     unknown: FxHashSet<char>,
     failed: bool,
 }
 
 impl Reader {
     /// The position of a label, new or known.
-    fn label(&mut self, name: &str) -> usize {
-        if let Some(index) = self.labels.iter().position(|(label, _)| label == name) {
+    fn label(&mut self, name: &str, letter: char) -> usize {
+        if let Some(index) = self.labels.iter().position(|label| label.name == name) {
             return index;
         }
-        self.labels.push((name.to_owned(), Vec::new()));
+        self.labels.push(Lettered { name: name.to_owned(), letter, cells: Vec::new() });
         self.labels.len() - 1
     }
 
@@ -165,8 +165,8 @@ impl Reader {
             Some(Meaning::Free) => {}
             Some(Meaning::Obstacle) => self.obstacles.push(cell),
             Some(Meaning::Labelled(label)) => {
-                let index = self.label(&label);
-                self.labels[index].1.push(cell);
+                let index = self.label(&label, letter);
+                self.labels[index].cells.push(cell);
             }
             None => {
                 self.failed = true;

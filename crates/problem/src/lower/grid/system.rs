@@ -1,6 +1,6 @@
 //! A map's moves and rules as ordinary variables, clauses and labels.
 
-use super::{Cell, GridMap, Move, Rule};
+use super::{Cell, GridMap, Lettered, Move, Rule};
 use crate::expr::{Comparison, Expr, Leaf, TupleSet, Type, Value};
 use crate::ids::VarId;
 use crate::lower::{Actions, Base};
@@ -23,11 +23,15 @@ pub(crate) struct Rules {
     pub(crate) obstacle: Rule,
     /// What becomes of a move over the edge.
     pub(crate) edge: Rule,
+    /// What becomes of a diagonal move between two obstacles, onto a free cell; `None`: nothing special.
+    pub(crate) corner: Option<Rule>,
+    /// Whether clauses of the file move the robot too, perhaps onto an obstacle.
+    pub(crate) clauses_move: bool,
 }
 
 impl Rules {
     fn can_crash(&self) -> bool {
-        self.obstacle == Rule::Crash || self.edge == Rule::Crash
+        [Some(self.obstacle), Some(self.edge), self.corner].contains(&Some(Rule::Crash))
     }
 }
 
@@ -110,7 +114,7 @@ pub(crate) fn base(map: &GridMap, rules: &Rules, actions: &mut Actions, span: Sp
         (None, true) => not(var(CRASH)),
         (None, false) => Expr::TRUE,
     };
-    let labels = map.labels.iter().map(|(name, cells)| {
+    let labels = map.labels.iter().map(|Lettered { name, cells, .. }| {
         let expr = if cells.is_empty() {
             Expr::FALSE
         } else {
@@ -130,6 +134,7 @@ pub(crate) fn base(map: &GridMap, rules: &Rules, actions: &mut Actions, span: Sp
             width: map.width,
             height: map.height,
             obstacles: map.obstacles.clone(),
+            letters: map.labels.iter().map(|label| (label.name.clone(), label.letter)).collect(),
             x: X,
             y: Y,
             crash: can_crash.then_some(CRASH),
@@ -183,11 +188,17 @@ type Case = (Expr<Leaf>, Vec<(VarId, Update)>);
 fn cases(map: &GridMap, rules: &Rules, ground: &Ground, step: Move) -> Vec<Case> {
     let change = |id, by| (by != 0).then(|| (id, Update::Assign(moved(id, by))));
     let updates = change(X, step.dx).into_iter().chain(change(Y, step.dy)).collect();
-    let mut cases = vec![(free(ground, step).unwrap_or(Expr::TRUE), updates)];
-    if (step.dx, step.dy) == (0, 0) {
-        return cases;
-    }
-    let bumps = [(rules.obstacle, blocked(map, ground, step)), (rules.edge, leaves(map, step))];
+    let free = free(ground, step).unwrap_or(Expr::TRUE);
+    let corner = rules.corner.and_then(|rule| Some((rule, between(map, ground, step)?)));
+    let mut cases = match &corner {
+        None => vec![(free.clone(), updates)],
+        Some((_, between)) => vec![(Expr::And(vec![free.clone(), not(between.clone())]), updates)],
+    };
+    // Only a clause of the file leads onto an obstacle, where `stay` is a move onto one like others.
+    let onto = (step.dx, step.dy) != (0, 0) || rules.clauses_move;
+    let onto = if onto { blocked(map, ground, step) } else { None };
+    let mut bumps = vec![(rules.obstacle, onto), (rules.edge, leaves(map, step))];
+    bumps.extend(corner.map(|(rule, between)| (rule, Some(Expr::And(vec![between, free])))));
     for (rule, guard) in bumps {
         let updates = match rule {
             Rule::Undefined => continue,
@@ -197,4 +208,14 @@ fn cases(map: &GridMap, rules: &Rules, ground: &Ground, step: Move) -> Vec<Case>
         cases.extend(guard.map(|guard| (guard, updates)));
     }
     cases
+}
+
+/// The move is diagonal and passes between two obstacles; `None` where it never does. Both are inside the map, and so is
+/// the cell that it leads to.
+fn between(map: &GridMap, ground: &Ground, step: Move) -> Option<Expr<Leaf>> {
+    let beside = |dx, dy| blocked(map, ground, Move { dx, dy, ..step });
+    match (step.dx, step.dy) {
+        (0, _) | (_, 0) => None,
+        (dx, dy) => Some(Expr::And(vec![beside(dx, 0)?, beside(0, dy)?])),
+    }
 }
