@@ -14,8 +14,10 @@ mod source;
 mod system;
 
 use crate::ast::{Expr, ExprKind, File, Ident, Item, ObjectiveBody};
+use crate::is_name;
 use layout::{Indent, Layout};
 use source::Source;
+use system::quoted;
 
 /// The file as text, formatted. Parsing gives the same tree again, apart from places.
 ///
@@ -125,7 +127,8 @@ impl Printer<'_> {
     fn names(&mut self, names: &[Ident], between: &'static str) {
         self.separated(names, between, |printer, name| {
             printer.comments(name.span.start as usize);
-            printer.layout.text(name.name.clone());
+            let written = if is_name(&name.name) { name.name.clone() } else { quoted(&name.name) };
+            printer.layout.text(written);
         });
     }
 

@@ -166,6 +166,8 @@ fn actions(
                 let message =
                     "`none` says in objectives that no action was taken: no action can have that name";
                 cx.diagnostics.push(Diagnostic::error("reserved-name", name.span, message));
+                // Clauses of it are not wrong on their own account.
+                declared.push(known.intern(&name.name));
             } else if let Some(first) = places.get(name.name.as_str()) {
                 cx.diagnostics.push(duplicate("action", name, *first));
             } else {

@@ -176,7 +176,10 @@ impl Parser<'_> {
         };
         let begins_range = matches!(self.peek_at(1), Tok::DotDot | Tok::LBracket | Tok::LParen)
             || self.token_at(1).infix().is_some();
-        if let Some(known) = known.filter(|_| !begins_range) {
+        if matches!(token.text, "int" | "integer") && self.peek_at(1) == Tok::Number {
+            self.wrong(token.span, "a range has no word before it", "write `LO..HI` alone: `x: 0..2`");
+            self.bump();
+        } else if let Some(known) = known.filter(|_| !begins_range) {
             self.bump();
             return Ok(known);
         }
@@ -234,7 +237,7 @@ impl Parser<'_> {
     }
 
     fn clause_actions(&mut self) -> Parse<Vec<Ident>> {
-        let mut actions = vec![self.name("the name of an action or `*`")?];
+        let mut actions = vec![self.action("the name of an action or `*`")?];
         loop {
             let token = self.token();
             match token.tok {
@@ -251,8 +254,17 @@ impl Parser<'_> {
                 }
                 _ => return Ok(actions),
             }
-            actions.push(self.name("the name of an action")?);
+            actions.push(self.action("the name of an action")?);
         }
+    }
+
+    /// The name of an action, in quotes where a graph's action is no word.
+    fn action(&mut self, what: &str) -> Parse<Ident> {
+        if self.peek() != Tok::Str {
+            return self.name(what);
+        }
+        let quoted = self.string(what)?;
+        Ok(Ident { name: quoted.text, span: quoted.span })
     }
 
     fn guard(&mut self) -> Parse<Option<Expr>> {
