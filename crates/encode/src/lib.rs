@@ -28,7 +28,7 @@ mod writing;
 
 pub use encoder::Encoder;
 pub use hyperplan_problem::answer::States;
-pub use hyperplan_relevance::{Error, Goal, Instance, Known, Limits, Narrowing, Relevant, Stop};
+pub use hyperplan_relevance::{Belief, Error, Goal, Instance, Known, Limits, Narrowing, Relevant, Stop};
 pub use hyperplan_space::Graphs;
 pub use names::Copies;
 pub use query::Query;

@@ -8,7 +8,7 @@ use crate::value::Val;
 use derive_more::{From, Into};
 use hyperplan_problem::{ActionId, Expr, FormulaId, Leaf, PathId, PathLeaf, State, Trace};
 use hyperplan_relevance::Error;
-use hyperplan_relevance::{Goal, Instance, Known, Narrowing, Relevant};
+use hyperplan_relevance::{Belief, Goal, Instance, Known, Narrowing, Relevant};
 use hyperplan_smt::{Model, Script, Term, Terms};
 use std::sync::Arc;
 use typed_index_collections::TiVec;
@@ -48,6 +48,15 @@ pub trait Writer: Send + Sync {
     /// [`Error::TooLarge`] where too much can matter.
     fn relevant(&self, _: &[PathId], _: &Goal, _: Narrowing) -> Result<Relevant, Error> {
         Ok(Relevant::default())
+    }
+
+    /// Searches for the paths of the leading block by what the other block, the last, may be doing, without any query; see
+    /// [`Belief`]. `budget` is in chances looked at. By default it is not known how.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`], and [`Error::TooLarge`] where too much can matter.
+    fn believe(&self, _: &[PathId], _: &Goal, _: usize) -> Result<Belief<Vec<Known>>, Error> {
+        Ok(Belief::Open)
     }
 
     /// The paths of a query in which some are known, with what was found out about those of the leading block.

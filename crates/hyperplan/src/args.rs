@@ -82,6 +82,7 @@ fn quantifiers() -> impl TypedValueParser<Value = Quantifiers> {
         Quantifiers::Keep => "Leave quantifiers to the solver",
         Quantifiers::Expand => "Copies of the formula for every case, without quantifiers",
         Quantifiers::Cegis => "Counterexample-guided",
+        Quantifiers::Explicit => "Without a solver: a search over what the other player may be doing",
     };
     let values = Quantifiers::ALL.iter().map(|&value| PossibleValue::new(value.name()).help(help(value)));
     PossibleValuesParser::new(values.collect::<Vec<_>>()).try_map(|name| name.parse())

@@ -6,7 +6,7 @@ use crate::direct::{self, Direct};
 use crate::fact::{Because, Error, Fault, Unsupported};
 use crate::oracle::{Oracle, Stop};
 use crate::prepare::{is_existential, is_finite};
-use hyperplan_encode::{Encoder, Goal, Narrowing};
+use hyperplan_encode::{Belief, Encoder, Goal, Narrowing};
 use hyperplan_problem::PathId;
 
 /// Runs that are hardly longer than the shortest make small queries, so they are tried first; then longer ones, and
@@ -81,6 +81,19 @@ impl<'s, 'a> Search<'s, 'a> {
             return self.keep(oracle);
         }
         let choice = self.quantifiers;
+        match choice {
+            Quantifiers::Explicit => {
+                let found = self.explicit(usize::MAX)?;
+                return found.ok_or_else(|| Error::from(Unsupported::NotExplicit).into());
+            }
+            Quantifiers::Auto => {
+                if let Some(found) = self.explicit(self.encoder.task.limits.chances)? {
+                    (self.quantifiers, self.because) = (Quantifiers::Explicit, Some(Because::Searched));
+                    return Ok(found);
+                }
+            }
+            _ => {}
+        }
         for narrowing in self.narrowings() {
             let (found, exact) = match self.query(choice, narrowing)? {
                 Some(direct) => {
@@ -95,6 +108,23 @@ impl<'s, 'a> Search<'s, 'a> {
             }
         }
         Ok(None)
+    }
+
+    /// What a search without queries finds of two blocks; `None` where it is none for them, or takes too long.
+    fn explicit(&self, budget: usize) -> Result<Option<Option<Assignment>>, Stop> {
+        let [leading, _] = self.blocks.as_slice() else { return Ok(None) };
+        let goal = Goal::new(&self.encoder.objective.formula, self.want);
+        Ok(match self.encoder.writer.believe(leading, &goal, budget)? {
+            Belief::Found(known) => {
+                let mut found: Assignment = vec![None; self.encoder.objective.paths.len()];
+                for (&path, known) in leading.iter().zip(known) {
+                    found[usize::from(path)] = Some(known);
+                }
+                Some(Some(found))
+            }
+            Belief::Hopeless => Some(None),
+            Belief::Open => None,
+        })
     }
 
     /// The query without quantifiers, where one is wanted.

@@ -86,6 +86,14 @@ pub enum Unsupported {
     /// The embedded solver takes no quantifiers.
     #[error("quantifiers can be kept for a solver that decides them; the builtin solver does not")]
     KeptQuantifiers,
+    /// There is nothing to search explicitly.
+    #[error(
+        "an explicit search takes two blocks of quantifiers, two to four paths, and states that are written one by one"
+    )]
+    NotExplicit,
+    /// A search without queries is no benchmark.
+    #[error("an explicit search asks no solver: there is nothing to write")]
+    NothingToWrite,
     /// The problem has no such objective.
     #[error("there is no objective {0}")]
     NoObjective(String),
@@ -282,6 +290,9 @@ pub enum Because {
     /// There are none to decide.
     #[error("there is one block of quantifiers, so one query decides")]
     OneBlock,
+    /// No query was asked.
+    #[error("a search over what the other player may be doing was short")]
+    Searched,
     /// One query follows all runs.
     #[error("all runs of the other player's only path can be followed at once")]
     Swept,

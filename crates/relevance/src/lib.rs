@@ -5,7 +5,7 @@
 //! progression (Bacchus and Kabanza). [`Layers`] are the states of a path that can matter at each time; [`leading`] finds
 //! those of the leading block, which may lose runs on purpose ([`Narrowing`]) and says so, and [`Relevance`] those of
 //! the paths after it. A [`Game`] is played where two paths of different players are tied. [`cases`] are finitely many
-//! [`Instance`]s that stand for all choices of a path.
+//! [`Instance`]s that stand for all choices of a path. [`believe`] decides small two-player objectives by itself.
 //!
 //! Invariants: what is excluded can take part in no choice of all paths that its player would accept (the argument
 //! stands at the head of `reach`), unless [`Relevant::is_exact`] says otherwise. No term, no solver and no way of writing
@@ -14,6 +14,7 @@
 //! `task` < `goal` < `residual` < `reach` < `game` < `relevant`; `layers` and `instance` are data, and `cases` reads
 //! `residual` and `instance`.
 
+mod belief;
 mod cases;
 mod game;
 mod goal;
@@ -27,6 +28,7 @@ mod task;
 #[cfg(test)]
 mod tests;
 
+pub use belief::{Belief, believe};
 pub use cases::{Numbering, cases};
 pub use game::{Game, LosingMove, MAX_RESIDUALS, Pair, Turn};
 pub use goal::Goal;

@@ -21,6 +21,8 @@ pub struct Limits {
     pub swept: usize,
     /// Residuals of the formula beyond which pruning forgets it.
     pub residuals: usize,
+    /// Chances of the other player that are looked at before a solver is asked.
+    pub chances: usize,
     /// Cases of one universally quantified path.
     pub cases: usize,
     /// States of a system that become the constructors of a datatype.
@@ -39,6 +41,7 @@ impl Default for Limits {
             pairs: 6_000_000,
             swept: 3_000_000,
             residuals: 20_000,
+            chances: 1_000_000,
             cases: 4096,
             constructors: 65_536,
             prune: true,

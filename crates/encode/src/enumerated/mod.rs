@@ -16,8 +16,8 @@ use hyperplan_problem::{
 };
 use hyperplan_relevance::Error;
 use hyperplan_relevance::{
-    Arena, Game, Goal, Instance, Known, Layers, Move, Narrowing, Numbering, Relevance, Relevant, Start,
-    cases, generalize, in_state, leading,
+    Arena, Belief, Game, Goal, Instance, Known, Layers, Move, Narrowing, Numbering, Relevance, Relevant,
+    Start, believe, cases, generalize, in_state, leading,
 };
 use hyperplan_smt::{Model, Script, Term, Terms};
 use hyperplan_space::{Graph, Letter, Run, StateIx, eval};
@@ -94,6 +94,17 @@ impl Numbering for AsInGraph {
 impl Writer for Enumerated<'_> {
     fn relevant(&self, block: &[PathId], goal: &Goal, narrowing: Narrowing) -> Result<Relevant, Error> {
         leading(&self.arena, block, goal, narrowing)
+    }
+
+    fn believe(&self, block: &[PathId], goal: &Goal, budget: usize) -> Result<Belief<Vec<Known>>, Error> {
+        Ok(match believe(&self.arena, block.len(), goal, budget)? {
+            Belief::Found(runs) => {
+                let known = block.iter().zip(&runs).map(|(&path, run)| self.known_run(path, run));
+                Belief::Found(known.collect())
+            }
+            Belief::Hopeless => Belief::Hopeless,
+            Belief::Open => Belief::Open,
+        })
     }
 
     fn begin<'e>(

@@ -89,7 +89,7 @@ pub(super) fn quantifiers(quantifiers: Quantifiers, features: &Features, exists:
                     what defeats each"
                 .into();
         }
-        Quantifiers::Expand | Quantifiers::Auto => "expanded",
+        Quantifiers::Expand | Quantifiers::Auto | Quantifiers::Explicit => "expanded",
     };
     format!("{how}; satisfiable if and only if there is {meaning}")
 }

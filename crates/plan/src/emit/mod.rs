@@ -263,6 +263,7 @@ fn quantifiers(
     notes: &mut Vec<Note>,
 ) -> Result<Quantifiers, Error> {
     match (config.track, config.quantifiers) {
+        (_, Quantifiers::Explicit) => Err(Unsupported::NothingToWrite.into()),
         (Track::Incremental, Quantifiers::Auto | Quantifiers::Cegis)
         | (Track::Single, Quantifiers::Cegis) => Ok(Quantifiers::Cegis),
         (Track::Incremental, one) => Err(Unsupported::SingleQuery(one).into()),

@@ -165,6 +165,8 @@ pub enum Quantifiers {
     Expand,
     /// Universal ones by counterexamples.
     Cegis,
+    /// Without a solver: by a search over what the other player may be doing.
+    Explicit,
 }
 
 /// How states are written.
@@ -198,7 +200,7 @@ impl States {
     }
 }
 
-names!(pub Quantifiers: Auto "auto", Keep "keep", Expand "expand", Cegis "cegis");
+names!(pub Quantifiers: Auto "auto", Keep "keep", Expand "expand", Cegis "cegis", Explicit "explicit");
 names!(pub Verified: BySearch "by-search", BySolver "by-solver");
 names!(pub States: Onehot "onehot", Bitvec "bitvec", Int "int", Enum "enum", Real "real");
 

@@ -35,6 +35,7 @@ mod question;
 mod tests;
 
 pub(crate) use explore::Exploration;
+pub(crate) use product::Product;
 pub(crate) use question::{Explored, Place, Question};
 
 use crate::task::Error;

@@ -17,7 +17,7 @@ pub(crate) struct Product<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Product<'a, N> {
-    pub(super) fn new(question: &'a Question<'a, N>) -> Self {
+    pub(crate) fn new(question: &'a Question<'a, N>) -> Self {
         let task = &question.arena.task;
         let graphs = question.paths.map(|path| &*question.arena.graphs[path]);
         let horizon = question.paths.iter().map(|&path| task.horizon(path)).max().unwrap_or(0);
@@ -29,12 +29,12 @@ impl<'a, const N: usize> Product<'a, N> {
     }
 
     /// The values of the atoms where the paths enter these places at a time.
-    pub(super) fn bits(&mut self, places: &[Place; N], time: u32) -> Bits {
+    pub(crate) fn bits(&mut self, places: &[Place; N], time: u32) -> Bits {
         self.atoms.bits(self.question, &self.graphs, places, time)
     }
 
     /// What is left once the atoms have these values at a time.
-    pub(super) fn progress(&mut self, before: Residual, bits: Bits, time: u32) -> Residual {
+    pub(crate) fn progress(&mut self, before: Residual, bits: Bits, time: u32) -> Residual {
         let last = self.question.arena.task.is_last(time);
         self.residuals.progress(before, Now { bits: bits.holds, unknown: bits.unknown, last })
     }
@@ -53,6 +53,8 @@ impl<'a, const N: usize> Product<'a, N> {
     /// Whether every atom of the formula is known.
     pub(crate) fn knows_all(&self) -> bool {
         let nodes = &self.question.arena.task.objective.formula.nodes;
-        nodes.iter().filter(|node| matches!(node, Node::Atom(_))).count() == self.atoms.bit.len()
+        let atoms =
+            nodes.iter().filter(|node| matches!(node, Node::Atom(e) if !e.is_true() && !e.is_false()));
+        atoms.count() == self.atoms.bit.len()
     }
 }

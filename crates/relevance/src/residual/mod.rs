@@ -118,6 +118,13 @@ impl Residuals {
         let of = |id: &FormulaId, want: bool| both[*id][usize::from(want)];
         let many = |ids: &[FormulaId]| ids.iter().map(|id| of(id, want)).collect::<Vec<_>>();
         match node {
+            Node::Atom(e) if e.is_true() || e.is_false() => {
+                if e.is_true() == want {
+                    TRUE
+                } else {
+                    FALSE
+                }
+            }
             Node::Atom(_) => match bit(id) {
                 Some(bit) => self.intern(Shape::Literal { bit, positive: want }),
                 None => TRUE,
