@@ -56,7 +56,7 @@ pub trait Writer: Send + Sync {
     /// # Errors
     /// [`Error::Interrupted`], and [`Error::TooLarge`] where too much can matter.
     fn believe(&self, _: &[PathId], _: &Goal, _: usize) -> Result<Belief<Vec<Known>>, Error> {
-        Ok(Belief::Open)
+        Ok(Belief::Unfit)
     }
 
     /// The paths of a query in which some are known, with what was found out about those of the leading block.

@@ -36,6 +36,8 @@ pub(crate) struct Cegis<'s, 'a, 'c> {
     /// Checks of all searches, and after how many to give up.
     pub(crate) checks: u32,
     pub(crate) most_checks: Option<u32>,
+    /// After how many terms of one query to give up.
+    pub(crate) most_terms: Option<usize>,
     /// Which runs of the leading block are tried.
     pub(crate) narrowing: Narrowing,
     /// Whether nothing has been lost thereby, so that nothing found means that there is nothing.
@@ -89,6 +91,7 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
             rounds: 0,
             checks: 0,
             most_checks: None,
+            most_terms: None,
             narrowing: Narrowing::default(),
             exact: true,
             copies: Arc::default(),
@@ -126,7 +129,10 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
                 self.rounds += 1;
             }
             self.checks += 1;
-            if self.most_checks.is_some_and(|most| self.checks > most) {
+            let written = round.query.script.terms.len();
+            if self.most_checks.is_some_and(|most| self.checks > most)
+                || self.most_terms.is_some_and(|most| written > most)
+            {
                 return Err(Stop::Unknown(Reason::NoEnd(self.checks - 1)));
             }
             if !self.oracle.check(&mut round.dialogue, &round.query.script)? {

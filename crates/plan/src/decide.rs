@@ -3,11 +3,12 @@
 use crate::cegis::{Assignment, Cegis};
 use crate::config::{Config, Quantifiers};
 use crate::direct::{self, Direct};
-use crate::fact::{Because, Error, Fault, Unsupported};
+use crate::fact::{Because, Error, Fault, Reason, Unsupported};
 use crate::oracle::{Oracle, Stop};
 use crate::prepare::{is_existential, is_finite};
 use hyperplan_encode::{Belief, Encoder, Goal, Narrowing};
 use hyperplan_problem::PathId;
+use hyperplan_solver::Spec;
 
 /// Runs that are hardly longer than the shortest make small queries, so they are tried first; then longer ones, and
 /// then all, if there are others.
@@ -15,6 +16,16 @@ pub(crate) const SLACKS: [Option<u32>; 4] = [Some(4), Some(16), Some(64), None];
 
 /// After so many checks a search over infinitely many choices is taken to have no end.
 const ENDLESS: u32 = 200;
+
+/// How many chances an explicit search looks at in the time that it takes to write a term, by measurement.
+const CHANCES_PER_TERM: usize = 20;
+
+/// Where a query is so small that fewer chances could be looked at, it is asked at once.
+const LEAST_CHANCES: usize = 10_000;
+
+/// Chances of an explicit search that takes part of a second, then ten times as many, and so on; the search by counterexamples
+/// after each may write as many terms as take as long.
+const TURNS: [usize; 4] = [600_000, 6_000_000, 60_000_000, 600_000_000];
 
 /// What was found, and how.
 pub(crate) struct Decision {
@@ -52,6 +63,8 @@ struct Search<'s, 'a> {
     quantifiers: Quantifiers,
     because: Option<Because>,
     rounds: u32,
+    /// Chances that the last explicit search was allowed.
+    chances: usize,
 }
 
 impl<'s, 'a> Search<'s, 'a> {
@@ -66,6 +79,7 @@ impl<'s, 'a> Search<'s, 'a> {
             quantifiers: if alone { Quantifiers::Expand } else { config.quantifiers },
             because: alone.then_some(Because::OneBlock),
             rounds: 0,
+            chances: 0,
             blocks,
         }
     }
@@ -81,27 +95,29 @@ impl<'s, 'a> Search<'s, 'a> {
             return self.keep(oracle);
         }
         let choice = self.quantifiers;
-        match choice {
-            Quantifiers::Explicit => {
-                let found = self.explicit(usize::MAX)?;
-                return found.ok_or_else(|| Error::from(Unsupported::NotExplicit).into());
-            }
-            Quantifiers::Auto => {
-                if let Some(found) = self.explicit(self.encoder.task.limits.chances)? {
-                    (self.quantifiers, self.because) = (Quantifiers::Explicit, Some(Because::Searched));
-                    return Ok(found);
-                }
-            }
-            _ => {}
+        if choice == Quantifiers::Explicit {
+            return match self.explicit(usize::MAX)? {
+                Belief::Found(found) => Ok(Some(found)),
+                Belief::Hopeless => Ok(None),
+                Belief::Open | Belief::Unfit => Err(Error::from(Unsupported::NotExplicit).into()),
+            };
         }
-        for narrowing in self.narrowings() {
+        for (turn, narrowing) in self.narrowings().into_iter().enumerate() {
             let (found, exact) = match self.query(choice, narrowing)? {
                 Some(direct) => {
+                    // As much effort as the query took to write is worth trying to do without it, and more where one query
+                    // was not enough.
+                    let least = if turn == 0 { 0 } else { TURNS[0] };
+                    match self.without_query(choice, least.max(CHANCES_PER_TERM * direct.terms()))? {
+                        Belief::Found(found) => return Ok(Some(found)),
+                        Belief::Hopeless => return Ok(None),
+                        Belief::Open | Belief::Unfit => {}
+                    }
                     self.quantifiers = Quantifiers::Expand;
                     self.rounds += 1;
                     (direct.solve(oracle, 1)?, direct.exact)
                 }
-                None => self.by_counterexamples(choice, narrowing, oracle)?,
+                None => self.in_turn(choice, narrowing, oracle)?,
             };
             if found.is_some() || exact {
                 return Ok(found);
@@ -110,9 +126,48 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(None)
     }
 
-    /// What a search without queries finds of two blocks; `None` where it is none for them, or takes too long.
-    fn explicit(&self, budget: usize) -> Result<Option<Option<Assignment>>, Stop> {
-        let [leading, _] = self.blocks.as_slice() else { return Ok(None) };
+    /// An explicit search of at most so many chances, where the choice is ours and no query is asked for: what solvers are
+    /// compared by is what they are asked. It is begun anew only where much more is allowed than before.
+    fn without_query(&mut self, choice: Quantifiers, chances: usize) -> Result<Belief<Assignment>, Stop> {
+        let Config { solver, queries, cross_check, limits, .. } = self.config;
+        let ours = *solver == Spec::Builtin && queries.is_none() && cross_check.is_none();
+        let budget = chances.min(limits.chances);
+        if choice != Quantifiers::Auto || !ours || budget < 4 * self.chances.max(LEAST_CHANCES) {
+            return Ok(Belief::Unfit);
+        }
+        self.chances = budget;
+        let found = self.explicit(budget)?;
+        if matches!(found, Belief::Found(_) | Belief::Hopeless) {
+            (self.quantifiers, self.because) = (Quantifiers::Explicit, Some(Because::Searched));
+        }
+        Ok(found)
+    }
+
+    /// Searches by counterexamples and explicitly in turn, where the choice is ours, each with more effort every time.
+    fn in_turn(
+        &mut self,
+        choice: Quantifiers,
+        narrowing: Narrowing,
+        oracle: &mut Oracle<'_>,
+    ) -> Result<(Option<Assignment>, bool), Stop> {
+        for chances in TURNS {
+            match self.without_query(choice, chances)? {
+                Belief::Found(found) => return Ok((Some(found), true)),
+                Belief::Hopeless => return Ok((None, true)),
+                Belief::Open => {}
+                Belief::Unfit => break,
+            }
+            match self.by_counterexamples(choice, narrowing, Some(chances / CHANCES_PER_TERM), oracle) {
+                Err(Stop::Unknown(Reason::NoEnd(_))) if !self.config.deadline.passed() => {}
+                answer => return answer,
+            }
+        }
+        self.by_counterexamples(choice, narrowing, None, oracle)
+    }
+
+    /// What a search without queries finds of two blocks.
+    fn explicit(&self, budget: usize) -> Result<Belief<Assignment>, Stop> {
+        let [leading, _] = self.blocks.as_slice() else { return Ok(Belief::Unfit) };
         let goal = Goal::new(&self.encoder.objective.formula, self.want);
         Ok(match self.encoder.writer.believe(leading, &goal, budget)? {
             Belief::Found(known) => {
@@ -120,10 +175,11 @@ impl<'s, 'a> Search<'s, 'a> {
                 for (&path, known) in leading.iter().zip(known) {
                     found[usize::from(path)] = Some(known);
                 }
-                Some(Some(found))
+                Belief::Found(found)
             }
-            Belief::Hopeless => Some(None),
-            Belief::Open => None,
+            Belief::Hopeless => Belief::Hopeless,
+            Belief::Open => Belief::Open,
+            Belief::Unfit => Belief::Unfit,
         })
     }
 
@@ -149,6 +205,7 @@ impl<'s, 'a> Search<'s, 'a> {
         &mut self,
         choice: Quantifiers,
         narrowing: Narrowing,
+        most_terms: Option<usize>,
         oracle: &mut Oracle<'_>,
     ) -> Result<(Option<Assignment>, bool), Stop> {
         let auto = choice == Quantifiers::Auto;
@@ -159,7 +216,8 @@ impl<'s, 'a> Search<'s, 'a> {
         let objective = self.encoder.objective;
         let goal = Goal::new(&objective.formula, self.want);
         let mut cegis = Cegis::new(self.encoder, oracle, &self.blocks);
-        (cegis.narrowing, cegis.most_checks) = (narrowing, (!patient).then_some(ENDLESS));
+        (cegis.narrowing, cegis.most_terms) = (narrowing, most_terms);
+        cegis.most_checks = (!patient).then_some(ENDLESS);
         let found = cegis.find(0, &vec![None; objective.paths.len()], &goal, 1);
         self.rounds += cegis.rounds;
         let exact = cegis.exact;

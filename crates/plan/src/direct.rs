@@ -13,6 +13,13 @@ pub(crate) struct Direct<'e, 'a> {
     pub(crate) exact: bool,
 }
 
+impl Direct<'_, '_> {
+    /// How many terms were written.
+    pub(crate) fn terms(&self) -> usize {
+        self.query.script.terms.len()
+    }
+}
+
 /// Builds the query with the quantifiers of later blocks inside, the paper's formula (16): a path constraint is a
 /// conjunct under `exists` and an antecedent under `forall`, and only what determines a path is quantified.
 pub(crate) fn keep<'e, 'a>(

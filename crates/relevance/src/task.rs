@@ -21,7 +21,7 @@ pub struct Limits {
     pub swept: usize,
     /// Residuals of the formula beyond which pruning forgets it.
     pub residuals: usize,
-    /// Chances of the other player that are looked at before a solver is asked.
+    /// Chances of the other player that an explicit search may look at.
     pub chances: usize,
     /// Cases of one universally quantified path.
     pub cases: usize,
@@ -41,7 +41,7 @@ impl Default for Limits {
             pairs: 6_000_000,
             swept: 3_000_000,
             residuals: 20_000,
-            chances: 1_000_000,
+            chances: usize::MAX,
             cases: 4096,
             constructors: 65_536,
             prune: true,

@@ -104,6 +104,7 @@ impl Writer for Enumerated<'_> {
             }
             Belief::Hopeless => Belief::Hopeless,
             Belief::Open => Belief::Open,
+            Belief::Unfit => Belief::Unfit,
         })
     }
 

@@ -6,6 +6,7 @@ use crate::residual::{FALSE, Residual, TRUE};
 use hyperplan_space::{Graph, Letter, StateIx};
 use rustc_hash::FxHashMap;
 use std::hash::Hash;
+use std::ops::Range;
 use std::rc::Rc;
 
 /// A number for each of some things.
@@ -37,26 +38,42 @@ impl<T: Copy + Eq + Hash> Numbers<T> {
 pub(super) type LeadIx = u32;
 /// Where the other player's paths are, and what is left of the goal's rest.
 pub(super) type ChanceIx = u32;
+/// The states of the other player's paths.
+type OtherIx = u32;
+/// A step of the leading paths as the others see it: when it is, the actions, and the states that it leads to.
+type MoveIx = u32;
 
 /// States of all paths; those of the paths that are not meant are 0.
 type States<const N: usize> = [StateIx; N];
 
-/// A joint step: letters and states, of the paths that are meant.
-type JointStep<const N: usize> = ([Letter; N], States<N>);
+/// A joint step of the other player's paths.
+#[derive(Clone, Copy, Debug)]
+struct OtherStep<const N: usize> {
+    places: [Place; N],
+    to: OtherIx,
+}
 
 /// A step of the leading paths.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LeadStep<const N: usize> {
     pub(super) letters: [Letter; N],
     pub(super) to: LeadIx,
+    seen: MoveIx,
 }
 
 /// What a step of the leading paths makes of one chance.
 #[derive(Clone, Debug)]
 pub(super) enum After {
-    /// It may become any of these.
-    Left(Rc<[ChanceIx]>),
+    /// It may become any of these, by their places among all that were found.
+    Left(Range<usize>),
     /// It may come true: the leading paths lose.
+    Lost,
+}
+
+/// What becomes of a chance.
+enum Chance {
+    Gone,
+    Left(ChanceIx),
     Lost,
 }
 
@@ -68,11 +85,13 @@ pub(super) struct Chances<'a, const N: usize> {
     leading: usize,
     layers: Vec<Layers>,
     leads: Numbers<(States<N>, Residual)>,
-    chances: Numbers<(States<N>, Residual)>,
-    /// Steps of the other player's paths, by their states.
-    steps: FxHashMap<States<N>, Rc<[JointStep<N>]>>,
-    /// By time, letters and states of the leading step, and chance.
-    after: FxHashMap<(u32, [Letter; N], States<N>, ChanceIx), After>,
+    moves: Numbers<(u32, [Place; N])>,
+    others: Numbers<States<N>>,
+    chances: Numbers<(OtherIx, Residual)>,
+    steps: FxHashMap<OtherIx, Rc<[OtherStep<N>]>>,
+    after: FxHashMap<(MoveIx, ChanceIx), After>,
+    /// What `after` speaks of.
+    left: Vec<ChanceIx>,
     /// Chances looked at so far.
     pub(super) work: usize,
     pub(super) end: u32,
@@ -95,9 +114,12 @@ impl<'a, const N: usize> Chances<'a, N> {
             leading,
             layers,
             leads: Numbers::new(),
+            moves: Numbers::new(),
+            others: Numbers::new(),
             chances: Numbers::new(),
             steps: FxHashMap::default(),
             after: FxHashMap::default(),
+            left: Vec::new(),
             work: 0,
             end,
         })
@@ -128,157 +150,146 @@ impl<'a, const N: usize> Chances<'a, N> {
         lasts && self.layers[at].at.get(time as usize).is_none_or(|layer| layer.binary_search(&state).is_ok())
     }
 
-    /// Every choice of one of each path's options, of the paths in a range.
-    fn joint<T: Copy + Default>(
-        range: std::ops::Range<usize>,
-        options: impl Fn(usize) -> Vec<T>,
-    ) -> Vec<[T; N]> {
-        let mut all = vec![[T::default(); N]];
-        for at in range {
-            let own = options(at);
-            all = all
-                .iter()
-                .flat_map(|done| {
-                    own.iter()
-                        .map(move |&option| std::array::from_fn(|i| if i == at { option } else { done[i] }))
-                })
-                .collect();
-        }
-        all
-    }
-
     /// Where the leading paths can begin, each with the chances that there are then; `None` where they lose at once.
     pub(super) fn starts(&mut self) -> Vec<(LeadIx, Option<Vec<ChanceIx>>)> {
-        let initial = |this: &Self, at: usize| -> Vec<StateIx> {
-            this.graphs[at].initial.iter().copied().filter(|&state| this.matters(at, state, 0)).collect()
+        let initial = |at: usize| -> Vec<Place> {
+            let states = self.graphs[at].initial.iter().filter(|&&state| self.matters(at, state, 0));
+            states.map(|&state| (state, None)).collect()
         };
-        let leads = Self::joint(0..self.leading, |at| initial(self, at));
-        let others = Self::joint(self.leading..N, |at| initial(self, at));
+        let leads = joint(0..self.leading, initial);
+        let others = joint(self.leading..N, initial);
         let mut starts = Vec::new();
-        for states in leads {
-            let Some(lead) = self.lead(&states, &[None; N], self.own.initial, 0) else { continue };
-            let mut left = Some(Vec::new());
-            for other in &others {
-                let places = self.places(&states, &[None; N], other, &[None; N]);
-                match (self.chance(&places, other, self.rest.initial, 0), &mut left) {
-                    (Chance::Gone, _) | (_, None) => {}
-                    (Chance::Left(chance), Some(left)) => left.push(chance),
-                    (Chance::Lost, left) => *left = None,
-                }
-            }
-            if let Some(left) = &mut left {
-                left.sort_unstable();
-                left.dedup();
-            }
-            starts.push((lead, left));
+        for lead in leads {
+            let Some(entered) = self.lead(&lead, self.own.initial, 0) else { continue };
+            starts.push((entered, self.start(&lead, &others)));
         }
         starts
     }
 
-    fn places(
-        &self,
-        lead: &States<N>,
-        lead_letters: &[Option<Letter>; N],
-        other: &States<N>,
-        other_letters: &[Option<Letter>; N],
-    ) -> [Place; N] {
-        std::array::from_fn(|at| {
-            let (states, letters) =
-                if at < self.leading { (lead, lead_letters) } else { (other, other_letters) };
-            (states[at], letters[at].map(|letter| self.graphs[at].letters[letter as usize].0))
-        })
+    fn start(&mut self, lead: &[Place; N], others: &[[Place; N]]) -> Option<Vec<ChanceIx>> {
+        let mut left = Vec::new();
+        for places in others {
+            let other = self.others.of(places.map(|place| place.0));
+            match self.chance(&self.together(lead, places), other, self.rest.initial, 0) {
+                Chance::Gone => {}
+                Chance::Left(chance) => left.push(chance),
+                Chance::Lost => return None,
+            }
+        }
+        Some(left)
     }
 
-    /// The leading paths as they enter these states; `None` where what is asked of them alone cannot be met any more.
-    fn lead(
-        &mut self,
-        states: &States<N>,
-        letters: &[Option<Letter>; N],
-        before: Residual,
-        time: u32,
-    ) -> Option<LeadIx> {
-        let places = self.places(states, letters, &[0; N], &[None; N]);
-        let bits = self.own.bits(&places, time);
+    fn together(&self, lead: &[Place; N], other: &[Place; N]) -> [Place; N] {
+        std::array::from_fn(|at| if at < self.leading { lead[at] } else { other[at] })
+    }
+
+    /// The leading paths as they enter these places; `None` where what is asked of them alone cannot be met any more.
+    fn lead(&mut self, places: &[Place; N], before: Residual, time: u32) -> Option<LeadIx> {
+        let bits = self.own.bits(places, time);
         let left = self.own.progress(before, bits, time);
-        (left != FALSE).then(|| self.leads.of((*states, left)))
+        (left != FALSE).then(|| self.leads.of((places.map(|place| place.0), left)))
     }
 
-    fn chance(&mut self, places: &[Place; N], other: &States<N>, before: Residual, time: u32) -> Chance {
+    fn chance(&mut self, places: &[Place; N], other: OtherIx, before: Residual, time: u32) -> Chance {
         self.work += 1;
         let bits = self.rest.bits(places, time);
         match self.rest.progress(before, bits, time) {
             TRUE => Chance::Gone,
             FALSE => Chance::Lost,
-            left => Chance::Left(self.chances.of((*other, left))),
+            left => Chance::Left(self.chances.of((other, left))),
         }
     }
 
     /// The steps of the leading paths to a time.
     pub(super) fn lead_steps(&mut self, lead: LeadIx, time: u32) -> Vec<LeadStep<N>> {
         let (states, before) = self.leads.get(lead);
-        let joint = Self::joint(0..self.leading, |at| self.single_steps(at, states[at], time));
-        let mut steps = Vec::with_capacity(joint.len());
-        for step in joint {
-            let (letters, to) = (step.map(|s| s.0), step.map(|s| s.1));
-            if let Some(to) = self.lead(&to, &letters.map(Some), before, time) {
-                steps.push(LeadStep { letters, to });
+        let single = |at: usize| -> Vec<(Letter, StateIx)> {
+            let all = self.graphs[at].successors(states[at]).iter().copied();
+            all.filter(|&(_, to)| self.matters(at, to, time)).collect()
+        };
+        let all = joint(0..self.leading, single);
+        let mut steps = Vec::with_capacity(all.len());
+        for step in all {
+            let places = self.places(&step, 0..self.leading);
+            if let Some(to) = self.lead(&places, before, time) {
+                let seen = self.moves.of((time, places));
+                steps.push(LeadStep { letters: step.map(|s| s.0), to, seen });
             }
         }
         steps
     }
 
-    fn single_steps(&self, at: usize, state: StateIx, time: u32) -> Vec<(Letter, StateIx)> {
-        let all = self.graphs[at].successors(state).iter().copied();
-        all.filter(|&(_, to)| self.matters(at, to, time)).collect()
+    fn places(&self, step: &[(Letter, StateIx); N], meant: Range<usize>) -> [Place; N] {
+        std::array::from_fn(|at| {
+            let (letter, to) = step[at];
+            (to, meant.contains(&at).then(|| self.graphs[at].letters[letter as usize].0))
+        })
     }
 
     /// The steps of the other player's paths; which of them matter depends on the time.
-    fn other_steps(&mut self, states: &States<N>) -> Rc<[JointStep<N>]> {
-        if let Some(known) = self.steps.get(states) {
+    fn other_steps(&mut self, other: OtherIx) -> Rc<[OtherStep<N>]> {
+        if let Some(known) = self.steps.get(&other) {
             return known.clone();
         }
-        let joint = Self::joint(self.leading..N, |at| self.graphs[at].successors(states[at]).to_vec());
-        let steps: Rc<[JointStep<N>]> =
-            joint.into_iter().map(|step| (step.map(|s| s.0), step.map(|s| s.1))).collect();
-        self.steps.insert(*states, steps.clone());
+        let states = self.others.get(other);
+        let all = joint(self.leading..N, |at| self.graphs[at].successors(states[at]).to_vec());
+        let mut steps = Vec::with_capacity(all.len());
+        for step in all {
+            let places = self.places(&step, self.leading..N);
+            steps.push(OtherStep { places, to: self.others.of(step.map(|s| s.1)) });
+        }
+        let steps: Rc<[OtherStep<N>]> = steps.into();
+        self.steps.insert(other, steps.clone());
         steps
     }
 
     /// What a step of the leading paths to a time makes of a chance.
-    pub(super) fn after(&mut self, step: LeadStep<N>, chance: ChanceIx, time: u32) -> After {
-        let lead = self.states(step.to);
-        let key = (time, step.letters, lead, chance);
-        if let Some(known) = self.after.get(&key) {
+    pub(super) fn after(&mut self, step: LeadStep<N>, chance: ChanceIx) -> After {
+        if let Some(known) = self.after.get(&(step.seen, chance)) {
             return known.clone();
         }
-        let (states, before) = self.chances.get(chance);
-        let mut left = Vec::new();
-        let mut lost = false;
-        for (letters, to) in self.other_steps(&states).iter() {
-            if !(self.leading..N).all(|at| self.matters(at, to[at], time)) {
+        let (time, lead) = self.moves.get(step.seen);
+        let (other, before) = self.chances.get(chance);
+        let first = self.left.len();
+        let mut after = None;
+        for step in self.other_steps(other).iter() {
+            if !(self.leading..N).all(|at| self.matters(at, step.places[at].0, time)) {
                 continue;
             }
-            let places = self.places(&lead, &step.letters.map(Some), to, &letters.map(Some));
-            match self.chance(&places, to, before, time) {
+            match self.chance(&self.together(&lead, &step.places), step.to, before, time) {
                 Chance::Gone => {}
-                Chance::Left(chance) => left.push(chance),
+                Chance::Left(chance) => self.left.push(chance),
                 Chance::Lost => {
-                    lost = true;
+                    self.left.truncate(first);
+                    after = Some(After::Lost);
                     break;
                 }
             }
         }
-        left.sort_unstable();
-        left.dedup();
-        let after = if lost { After::Lost } else { After::Left(left.into()) };
-        self.after.insert(key, after.clone());
+        let after = after.unwrap_or(After::Left(first..self.left.len()));
+        self.after.insert((step.seen, chance), after.clone());
         after
+    }
+
+    /// Chances that [`After::Left`] speaks of.
+    pub(super) fn left(&self, range: Range<usize>) -> &[ChanceIx] {
+        &self.left[range]
     }
 }
 
-/// What becomes of a chance.
-enum Chance {
-    Gone,
-    Left(ChanceIx),
-    Lost,
+/// Every choice of one of each path's options, of the paths in a range.
+fn joint<T: Copy + Default, const N: usize>(
+    range: Range<usize>,
+    options: impl Fn(usize) -> Vec<T>,
+) -> Vec<[T; N]> {
+    let mut all = vec![[T::default(); N]];
+    for at in range {
+        let own = options(at);
+        let with = |done: &[T; N]| {
+            let done = *done;
+            own.iter().map(move |&option| std::array::from_fn(|i| if i == at { option } else { done[i] }))
+        };
+        all = all.iter().flat_map(with).collect();
+    }
+    all
 }

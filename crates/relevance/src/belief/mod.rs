@@ -20,7 +20,7 @@ mod search;
 
 use crate::goal::Goal;
 use crate::layers::Layers;
-use crate::reach::{self, Question};
+use crate::reach::{self, Explored, Question};
 use crate::task::{Arena, Error};
 use chances::Chances;
 use hyperplan_problem::PathId;
@@ -34,12 +34,16 @@ pub enum Belief<R> {
     Found(R),
     /// There are none.
     Hopeless,
-    /// The budget was not enough, or the objective is not of the kind.
+    /// The budget was not enough.
     Open,
+    /// The objective is not of the kind.
+    Unfit,
 }
 
 /// Searches for runs of the leading block that meet the goal whatever the other block, the last, does. `budget` is in chances
 /// looked at.
+///
+/// Runs that are hardly longer than the shortest leave the other player least to do, so they are tried first.
 ///
 /// # Errors
 /// [`Error::Interrupted`], and [`Error::TooLarge`] where too much can matter of a path alone.
@@ -50,15 +54,18 @@ pub fn believe(
     budget: usize,
 ) -> Result<Belief<Vec<Run>>, Error> {
     let paths: Vec<PathId> = arena.task.objective.paths.keys().collect();
-    match paths.as_slice() {
-        &[p, q] => about(arena, [p, q], leading, goal, budget),
-        &[p, q, r] => about(arena, [p, q, r], leading, goal, budget),
-        &[p, q, r, s] => about(arena, [p, q, r, s], leading, goal, budget),
-        _ => Ok(Belief::Open),
+    match *paths.as_slice() {
+        [p, q] => narrowed(arena, [p, q], leading, goal, budget),
+        [p, q, r] => narrowed(arena, [p, q, r], leading, goal, budget),
+        [p, q, r, s] => narrowed(arena, [p, q, r, s], leading, goal, budget),
+        _ => Ok(Belief::Unfit),
     }
 }
 
-fn about<const N: usize>(
+/// How much later than the earliest a run may owe nothing but safety, at first.
+const SLACK: u32 = 4;
+
+fn narrowed<const N: usize>(
     arena: &Arena<'_>,
     paths: [PathId; N],
     leading: usize,
@@ -70,30 +77,47 @@ fn about<const N: usize>(
     let against = rest.opposed(formula);
     let nothing: Vec<Option<Run>> = vec![None; N];
     let none = FxHashMap::default();
-    let question = |goal| Question {
+    let question = |goal, slack| Question {
         arena,
         paths,
         within: [None; N],
         goal,
         fixed: &nothing,
         declared: &none,
-        slack: None,
+        slack,
         least: 0,
         one_run: false,
         budget: arena.task.limits.pairs,
     };
-    let mut layers: Vec<Layers> = Vec::with_capacity(N);
-    for (at, &path) in paths.iter().enumerate() {
-        let wants = question(if at < leading { goal } else { &against });
-        let [found] = reach::layers(&wants.about([path]))?.layers;
-        if found.is_empty() && at < leading {
-            return Ok(Belief::Hopeless);
+    let alone = |at: usize, slack| {
+        let wants = question(if at < leading { goal } else { &against }, slack);
+        reach::layers(&wants.about([paths[at]]))
+    };
+    let others: Vec<Layers> = (leading..N)
+        .map(|at| alone(at, None).map(|Explored { layers: [layers], .. }| layers))
+        .collect::<Result<_, _>>()?;
+    let (own, rest) = (question(&own, None), question(&rest, None));
+    let mut answer = Belief::Open;
+    for slack in [Some(SLACK), None] {
+        let (mut layers, mut lossy) = (Vec::with_capacity(N), false);
+        for at in 0..leading {
+            let Explored { layers: [found], lossy: some } = alone(at, slack)?;
+            lossy |= some;
+            layers.push(found);
         }
-        layers.push(found);
+        answer = if layers.iter().any(Layers::is_empty) {
+            Belief::Hopeless
+        } else {
+            layers.extend(others.iter().cloned());
+            match Chances::new(&own, &rest, leading, layers) {
+                Some(chances) => Search::new(chances, budget).run()?,
+                None => return Ok(Belief::Unfit),
+            }
+        };
+        // What is too much among few runs is too much among all.
+        if !matches!(answer, Belief::Hopeless) || !lossy {
+            return Ok(answer);
+        }
     }
-    let (own, rest) = (question(&own), question(&rest));
-    match Chances::new(&own, &rest, leading, layers) {
-        Some(chances) => Search::new(chances, budget).run(),
-        None => Ok(Belief::Open),
-    }
+    Ok(answer)
 }

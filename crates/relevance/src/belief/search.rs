@@ -4,9 +4,10 @@ use super::Belief;
 use super::chances::{After, ChanceIx, Chances, LeadIx, LeadStep};
 use crate::task::Error;
 use hyperplan_space::Run;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
+use std::collections::BTreeSet;
 
-/// Sorted, without repetition.
+/// Without repetition, in no order that matters.
 type Set = Vec<ChanceIx>;
 
 /// Nogoods of one node that are kept; of more the last.
@@ -20,7 +21,7 @@ pub(super) struct Search<'a, const N: usize> {
     budget: usize,
     asked: usize,
     nogoods: FxHashMap<(u32, LeadIx), Vec<Set>>,
-    /// The last belief in which each chance was, by number, to look nogoods up.
+    /// The last set in which each chance was, by number.
     stamps: Vec<u32>,
     stamp: u32,
 }
@@ -32,7 +33,7 @@ struct Frame<const N: usize> {
     steps: Vec<Tried<N>>,
     next: usize,
     /// Chances by which the moves so far failed.
-    conflict: FxHashSet<ChanceIx>,
+    conflict: BTreeSet<ChanceIx>,
 }
 
 struct Tried<const N: usize> {
@@ -96,10 +97,12 @@ impl<'a, const N: usize> Search<'a, N> {
     }
 
     /// The moves of a belief at a time, those that leave least first; `None` beyond the budget.
-    fn frame(&mut self, lead: LeadIx, belief: Set, time: u32) -> Result<Option<Frame<N>>, Error> {
-        let mut frame = Frame { lead, belief, steps: Vec::new(), next: 0, conflict: FxHashSet::default() };
+    fn frame(&mut self, lead: LeadIx, mut belief: Set, time: u32) -> Result<Option<Frame<N>>, Error> {
+        // Those known longest are blamed first.
+        belief.sort_unstable();
+        let mut frame = Frame { lead, belief, steps: Vec::new(), next: 0, conflict: BTreeSet::new() };
         for step in self.chances.lead_steps(lead, time + 1) {
-            match self.after(step, &frame.belief, time + 1) {
+            match self.after(step, &frame.belief) {
                 Ok(belief) => frame.steps.push(Tried { step, belief }),
                 Err(lost) => {
                     frame.conflict.insert(lost);
@@ -114,25 +117,25 @@ impl<'a, const N: usize> Search<'a, N> {
         Ok((self.chances.work <= self.budget).then_some(frame))
     }
 
-    /// The belief after a step to a time, or a chance that loses by it.
-    fn after(&mut self, step: LeadStep<N>, belief: &Set, time: u32) -> Result<Set, ChanceIx> {
+    /// The belief after a step, or a chance that loses by it.
+    fn after(&mut self, step: LeadStep<N>, belief: &Set) -> Result<Set, ChanceIx> {
         let mut next = Vec::new();
+        self.stamp += 1;
         for &chance in belief {
-            match self.chances.after(step, chance, time) {
-                After::Left(left) => next.extend_from_slice(&left),
-                After::Lost => return Err(chance),
-            }
             self.chances.work += 1;
+            let After::Left(range) = self.chances.after(step, chance) else { return Err(chance) };
+            for &left in self.chances.left(range) {
+                if stamped(&mut self.stamps, left, self.stamp) {
+                    next.push(left);
+                }
+            }
         }
-        next.sort_unstable();
-        next.dedup();
         Ok(next)
     }
 
     /// A node of which every move fails: what is learnt, and whom the node before may blame.
     fn fail(&mut self, stack: &mut [Frame<N>], frame: Frame<N>) {
-        let mut nogood: Set = frame.conflict.into_iter().collect();
-        nogood.sort_unstable();
+        let nogood: Set = frame.conflict.into_iter().collect();
         let kept = self.nogoods.entry((stack.len() as u32, frame.lead)).or_default();
         if kept.len() >= KEPT {
             kept.remove(0);
@@ -143,11 +146,10 @@ impl<'a, const N: usize> Search<'a, N> {
 
     /// The move that the last node tried fails by these chances after it: traces them back to chances before it.
     fn blame(&mut self, stack: &mut [Frame<N>], nogood: &Set) {
-        let time = stack.len() as u32;
         let Some(frame) = stack.last_mut() else { return };
         let step = frame.steps[frame.next].step;
         frame.next += 1;
-        let mut left: FxHashSet<ChanceIx> = nogood.iter().copied().collect();
+        let mut left: BTreeSet<ChanceIx> = nogood.iter().copied().collect();
         // Those that are to blame already come first: the fewer, the more is excluded.
         let blamed = frame.belief.iter().filter(|chance| frame.conflict.contains(chance));
         let others = frame.belief.iter().filter(|chance| !frame.conflict.contains(chance));
@@ -156,11 +158,11 @@ impl<'a, const N: usize> Search<'a, N> {
             if left.is_empty() {
                 break;
             }
-            if let After::Left(after) = self.chances.after(step, chance, time) {
+            if let After::Left(range) = self.chances.after(step, chance) {
                 let before = left.len();
-                after.iter().for_each(|chance| {
+                for chance in self.chances.left(range) {
                     left.remove(chance);
-                });
+                }
                 if left.len() < before {
                     new.push(chance);
                 }
@@ -174,11 +176,7 @@ impl<'a, const N: usize> Search<'a, N> {
         let nogoods = self.nogoods.get(&(time, lead))?;
         self.stamp += 1;
         for &chance in belief {
-            let at = chance as usize;
-            if self.stamps.len() <= at {
-                self.stamps.resize(at + 1, 0);
-            }
-            self.stamps[at] = self.stamp;
+            stamped(&mut self.stamps, chance, self.stamp);
         }
         let (stamps, stamp) = (&self.stamps, self.stamp);
         let included = |nogood: &&Set| nogood.iter().all(|&c| stamps.get(c as usize) == Some(&stamp));
@@ -208,4 +206,13 @@ impl<'a, const N: usize> Search<'a, N> {
         });
         runs.collect::<Option<Vec<Run>>>().map_or(Belief::Open, Belief::Found)
     }
+}
+
+/// Marks a chance as one of the present set; whether it was not before.
+fn stamped(stamps: &mut Vec<u32>, chance: ChanceIx, stamp: u32) -> bool {
+    let at = chance as usize;
+    if stamps.len() <= at {
+        stamps.resize(at + 1, 0);
+    }
+    std::mem::replace(&mut stamps[at], stamp) != stamp
 }
