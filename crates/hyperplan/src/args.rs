@@ -461,6 +461,13 @@ pub(crate) struct Settings {
 
 #[derive(Debug, Args)]
 pub(crate) struct Solvers {
+    /// Only allows the hyperplan.toml of this folder (or of the nearest above it) to say which programs are run, until it
+    /// changes
+    #[arg(long)]
+    pub(crate) trust: bool,
+    /// Only takes that back
+    #[arg(long, alias = "untrust", conflicts_with = "trust")]
+    pub(crate) no_trust: bool,
     #[command(flatten)]
     pub(crate) output: Output,
 }

@@ -1,10 +1,10 @@
 //! What was typed becomes what is meant: the one place where arguments are checked.
 
 use crate::args::{self, ColorWhen};
-use crate::configuration;
+use crate::configuration::Configured;
 use crate::failure::{Failure, Result};
 use crate::guard;
-use crate::output::check_writable;
+use crate::output::{Output, check_writable};
 use crate::report::Picture;
 use crate::signals;
 use chrono::{DateTime, NaiveDate, Utc};
@@ -21,7 +21,7 @@ pub(crate) struct Solve {
 }
 
 impl Solve {
-    pub(crate) fn new(args: &args::Solve) -> Result<Self> {
+    pub(crate) fn new(args: &args::Solve, out: &Output) -> Result<Self> {
         let plot = args.plot.as_deref().map(Picture::new).transpose()?;
         for path in args.plot.iter().chain(&args.save) {
             check_writable(path)?;
@@ -34,10 +34,12 @@ impl Solve {
         if args.memory == Some(0) {
             return Err(Failure::input("--memory 0 leaves no memory to the solver"));
         }
-        let (solver, rivals) = solvers(&args.solver)?;
+        let configured = Configured::new(out);
+        let (solver, rivals) = solvers(&args.solver, &configured)?;
+        let second = |text: &String| self::solver(text, &configured);
         let plan = Config {
             rivals,
-            cross_check: args.cross_check.as_deref().map(self::solver).transpose()?,
+            cross_check: args.cross_check.as_ref().map(second).transpose()?,
             quantifiers: args.encoding.quantifiers,
             states: args.encoding.states,
             deadline: deadline(args.encoding.timeout, args.memory)?,
@@ -52,19 +54,19 @@ impl Solve {
 }
 
 /// A solver by name or command line.
-pub(crate) fn solver(text: &str) -> Result<Spec> {
-    match solvers(text)? {
+pub(crate) fn solver(text: &str, configured: &Configured<'_>) -> Result<Spec> {
+    match solvers(text, configured)? {
         (solver, rivals) if rivals.is_empty() => Ok(solver),
         _ => Err(Failure::input(format_args!("one solver is wanted here, not a list ({text})"))),
     }
 }
 
 /// One solver, and those that race it.
-fn solvers(text: &str) -> Result<(Spec, Vec<Spec>)> {
+fn solvers(text: &str, configured: &Configured<'_>) -> Result<(Spec, Vec<Spec>)> {
     // What is built in reads no configuration.
     let specs = match Spec::embedded(text.trim()) {
         Some(embedded) => embedded.map(|spec| vec![spec]),
-        None => configuration::catalog()?.specs(text),
+        None => configured.catalog()?.specs(text),
     };
     let specs = specs.map_err(|e| Failure::input(format_args!("{e}")))?;
     let mut specs = specs.into_iter();

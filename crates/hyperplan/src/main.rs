@@ -16,6 +16,7 @@ mod progress;
 mod report;
 mod signals;
 mod store;
+mod trusted;
 
 use clap::Parser as _;
 use failure::{Exit, Result};

@@ -2,8 +2,7 @@
 
 mod common;
 
-use common::{hyperplan, text};
-use std::process::Command;
+use common::{command, hyperplan, text};
 
 const DATE: [&str; 2] = ["--date", "2026-01-31"];
 
@@ -61,9 +60,7 @@ fn headers_are_reproducible() {
     );
     assert_eq!(head[4], "Generated on: 2026-01-31");
     assert_eq!(lines(&text, ":status"), ["(set-info :status sat)"]);
-    let from_epoch = Command::new(env!("CARGO_BIN_EXE_hyperplan"))
-        .args(["emit", "rooms.hp", "--objective", "sp", "--author", "A. Roboticist"])
-        .current_dir(common::specs())
+    let from_epoch = command(&["emit", "rooms.hp", "--objective", "sp", "--author", "A. Roboticist"])
         .env("SOURCE_DATE_EPOCH", "1769860800")
         .output()
         .expect("it runs");

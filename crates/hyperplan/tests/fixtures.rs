@@ -76,6 +76,8 @@ fn name(folder: &str, path: &Path) -> String {
 fn hyperplan(arguments: &[&OsStr]) -> Result<Output, Failed> {
     let mut command = Command::new(env!("CARGO_BIN_EXE_hyperplan"));
     command.current_dir(specs()).args(arguments).env_remove("NO_COLOR");
+    // Of a user who has configured nothing.
+    command.env("XDG_CONFIG_HOME", concat!(env!("CARGO_TARGET_TMPDIR"), "/no-configuration"));
     command.output().map_err(|e| format!("cannot run hyperplan: {e}").into())
 }
 

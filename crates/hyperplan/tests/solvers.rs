@@ -33,6 +33,13 @@ fn folders() -> (TempDir, TempDir) {
     (tempfile::tempdir().expect("a temporary folder"), tempfile::tempdir().expect("a temporary folder"))
 }
 
+/// Writes the project's configuration, which the user allows.
+fn configure(project: &TempDir, user: &TempDir, text: &str) {
+    fs::write(project.path().join("hyperplan.toml"), text).expect("ours");
+    let run = run_in(project.path(), user.path(), &["solvers", "--trust"]);
+    assert_eq!((run.status, run.stdout.as_str()), (0, ""), "{}", run.stderr);
+}
+
 fn entry(name: &str, fake: &Fake) -> String {
     format!("[[solver]]\nname = \"{name}\"\nprogram = \"{}\"\n", fake.program().display())
 }
@@ -45,18 +52,14 @@ fn a_solver_of_the_project_and_of_the_user() {
     fs::create_dir_all(&inner).expect("ours");
     fs::create_dir(user.path().join("hyperplan")).expect("ours");
     fs::write(user.path().join("hyperplan/hyperplan.toml"), entry("theirs", &fake)).expect("ours");
-    fs::write(project.path().join("hyperplan.toml"), entry("mine", &fake)).expect("ours");
+    configure(&project, &user, &entry("mine", &fake));
     for name in ["mine", "theirs"] {
         let run = solve_in(&inner, user.path(), &["--solver", name]);
         assert_eq!(run.status, 1, "{name}: {}", run.stderr);
         assert_eq!(run.json()[0]["solver"]["name"], name);
     }
     // The project has the last word.
-    fs::write(
-        project.path().join("hyperplan.toml"),
-        "[[solver]]\nname = \"theirs\"\nprogram = \"/no/such\"\n",
-    )
-    .expect("ours");
+    configure(&project, &user, "[[solver]]\nname = \"theirs\"\nprogram = \"/no/such\"\n");
     let run = solve_in(&inner, user.path(), &["--solver", "theirs"]);
     assert_eq!(run.status, 4, "{}", run.stderr);
     assert!(
@@ -77,8 +80,7 @@ fn a_solver_of_the_project_and_of_the_user() {
 fn the_environment_says_where_a_solver_is() {
     let (project, user) = folders();
     let fake = Fake::replying(UNSAT);
-    fs::write(project.path().join("hyperplan.toml"), "[[solver]]\nname = \"my-own.1\"\nprogram = \"/no\"\n")
-        .expect("ours");
+    configure(&project, &user, "[[solver]]\nname = \"my-own.1\"\nprogram = \"/no\"\n");
     let rooms = specs().join("rooms.hp");
     let mut command = command(&["solve", text(&rooms), "--objective", "sp", "--solver", "my-own.1"]);
     command.current_dir(project.path()).env("XDG_CONFIG_HOME", user.path());
@@ -133,7 +135,7 @@ fn abilities_bound_what_is_asked() {
     let (project, user) = folders();
     let fake = Fake::replying(UNSAT);
     let limits = "theories = [\"bit-vectors\"]\nquantifiers = \"none\"\n";
-    fs::write(project.path().join("hyperplan.toml"), entry("small", &fake) + limits).expect("ours");
+    configure(&project, &user, &(entry("small", &fake) + limits));
     let refused = |options: &[&str]| {
         let run = solve_in(project.path(), user.path(), &[&["--solver", "small"], options].concat());
         assert_eq!((run.status, run.stdout.as_str()), (2, ""), "{}", run.stderr);
@@ -143,6 +145,90 @@ fn abilities_bound_what_is_asked() {
     assert!(message.contains("the small solver has no integers: use one of z3, cvc5, yices"), "{message}");
     let message = refused(&["--quantifiers", "keep"]);
     assert!(message.contains("the small solver cannot handle quantifiers"), "{message}");
+}
+
+/// Who hands on a folder says what is run only if the user has allowed that, of that very file.
+#[test]
+fn strangers_name_no_programs() {
+    let (project, user) = folders();
+    let fake = Fake::replying(UNSAT);
+    let file = project.path().join("hyperplan.toml");
+    let inner = project.path().join("maps");
+    fs::create_dir(&inner).expect("ours");
+    let program = fake.program().display().to_string();
+    let solve = |name: &str| solve_in(&inner, user.path(), &["--solver", name]);
+    let run = |option: &str| run_in(&inner, user.path(), &["solvers", option]);
+    for danger in [
+        format!("name = \"z3\"\nprogram = \"{program}\""),
+        "name = \"z3\"\narguments = [\"/etc/passwd\"]".to_owned(),
+        "name = \"z3\"\none-shot = [\"-o\", \"x\", \"{file}\"]".to_owned(),
+        "name = \"z3\"\nsetup = [\"(set-option :regular-output-channel \\\"x\\\")\"]".to_owned(),
+        "name = \"z3\"\nlogic = \"ALL) (echo\"".to_owned(),
+        "name = \"z3\"\nseed = \":x\"".to_owned(),
+        "name = \"z3\"\nversion = [\"-x\"]".to_owned(),
+    ] {
+        fs::write(&file, format!("[[solver]]\n{danger}\n")).expect("ours");
+        let found = run_in(&inner, user.path(), &["solvers", "--format", "json"]);
+        let z3 = found.json().into_iter().find(|solver| solver["name"] == "z3").expect("it is known");
+        assert!(z3["origin"].is_null(), "{danger}: {z3}");
+        assert_eq!(found.stderr.lines().count(), 1, "{danger}: {}", found.stderr);
+        for words in [text(&file), "is not used", "hyperplan solvers --trust"] {
+            assert!(found.stderr.contains(words), "{danger}: {}", found.stderr);
+        }
+    }
+    fs::write(&file, entry("mine", &fake)).expect("ours");
+    assert_eq!((solve("mine").status, fake.begun()), (4, 0));
+    assert_eq!(run("--trust").status, 0);
+    assert_eq!(fake.begun(), 0, "to allow it is not to run it");
+    assert_eq!(solve("mine").status, 1);
+    // With a change it is another.
+    fs::write(&file, entry("mine", &fake) + "\n").expect("ours");
+    assert_eq!(solve("mine").status, 4);
+    fs::write(&file, entry("mine", &fake)).expect("ours");
+    assert_eq!(solve("mine").status, 1);
+    for (option, words) in [("--no-trust", "no longer trusted"), ("--untrust", "is not trusted")] {
+        let taken_back = run(option);
+        assert!(taken_back.status == 0 && taken_back.stderr.contains(words), "{}", taken_back.stderr);
+        assert_eq!(solve("mine").status, 4);
+    }
+    // The same in another folder is another, and nobody else has allowed anything.
+    assert_eq!(run("--trust").status, 0);
+    let other = tempfile::tempdir().expect("a temporary folder");
+    fs::copy(&file, other.path().join("hyperplan.toml")).expect("ours");
+    assert_eq!(solve_in(other.path(), user.path(), &["--solver", "mine"]).status, 4);
+    assert_eq!(solve_in(&inner, other.path(), &["--solver", "mine"]).status, 4);
+    assert_eq!(run_in(user.path(), user.path(), &["solvers", "--trust"]).status, 2);
+}
+
+#[test]
+fn what_runs_nothing_needs_no_trust() {
+    let (project, user) = folders();
+    let harmless = "[[solver]]\nname = \"z3\"\naliases = [\"zed\"]\ntheories = []\nquantifiers = \"none\"\n\
+                    incremental = true\nassumptions = \"push\"\ntells-version = true\ninstall = { see = \"here\" }\n";
+    fs::write(project.path().join("hyperplan.toml"), harmless).expect("ours");
+    let found = run_in(project.path(), user.path(), &["solvers", "--format", "json"]).json();
+    let z3 = found.iter().find(|solver| solver["name"] == "z3").expect("it is known");
+    assert!(z3["origin"].is_string(), "{z3}");
+}
+
+/// What is in the current folder is not run because `PATH` is empty, or leads there.
+#[test]
+fn the_current_folder_is_no_place_for_programs() {
+    let (project, user) = folders();
+    let (fake, shell) = (Fake::called("z3", "echo unsat"), Fake::called("sh", "exit 1"));
+    for (fake, name) in [(&fake, "z3"), (&shell, "sh")] {
+        fs::copy(fake.program(), project.path().join(name)).expect("ours");
+    }
+    let rooms = specs().join("rooms.hp");
+    for path in ["", ":", ".", "./", ":/no/such:"] {
+        for solver in ["z3", "z3 -in"] {
+            let mut command = command(&["solve", text(&rooms), "--objective", "sp", "--solver", solver]);
+            command.current_dir(project.path()).env("XDG_CONFIG_HOME", user.path()).env("PATH", path);
+            let run = Run::new(command.output().expect("built"));
+            assert_eq!((run.status, fake.begun(), shell.begun()), (4, 0, 0), "{path:?}: {}", run.stderr);
+            assert!(run.stderr.contains("solver z3 was not found"), "{path:?}: {}", run.stderr);
+        }
+    }
 }
 
 #[test]
@@ -155,7 +241,7 @@ grep -q 'get-value' \"$2\" || exit 3
 echo unsat; echo '(error \"no model\")'; exit 1";
     let fake = Fake::new(body);
     let lines = "incremental = false\none-shot = [\"-f\", \"{file}\"]\n";
-    fs::write(project.path().join("hyperplan.toml"), entry("batch", &fake) + lines).expect("ours");
+    configure(&project, &user, &(entry("batch", &fake) + lines));
     let run = solve_in(project.path(), user.path(), &["--solver", "batch", "--quantifiers", "cegis"]);
     assert_eq!(run.status, 1, "{}", run.stderr);
     fake.is_clean().unwrap_or_else(|left| panic!("{left}"));
@@ -172,7 +258,7 @@ grep '^(get-value' \"$1\" | while read -r line; do echo '(error \"line 5: no mod
 tail -n 2 \"$1\" | grep -q '^(get-info :reason-unknown)' && echo '(:reason-unknown \"too hard (for me)\")'";
     let fake = Fake::new(body);
     let lines = "one-shot = [\"{file}\"]\ntells-version = true\n";
-    fs::write(project.path().join("hyperplan.toml"), entry("weak", &fake) + lines).expect("ours");
+    configure(&project, &user, &(entry("weak", &fake) + lines));
     let run = solve_in(project.path(), user.path(), &["--solver", "weak", "--quantifiers", "expand"]);
     assert_eq!(run.status, 3, "{}", run.stderr);
     let answer = &run.json()[0];

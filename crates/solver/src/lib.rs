@@ -21,7 +21,7 @@ pub use error::{Error, Unknown};
 pub use external::understand_output;
 pub use external::{
     Catalog, ConfigError, Found, Install, PrintedModel, PrintedModelError, Profile, Spec, Standalone,
-    discover, end_with_parent,
+    discover, end_with_parent, says_what_to_run,
 };
 pub use open::open;
 pub use session::{Answer, Identity, Options, QuerySize, Session};

@@ -2,7 +2,7 @@
 
 use crate::args;
 use crate::config;
-use crate::configuration;
+use crate::configuration::Configured;
 use crate::failure::{Exit, Failure, Result};
 use crate::instances::instances;
 use crate::output::Output;
@@ -30,7 +30,7 @@ pub(crate) fn run(args: &args::Compare, verbose: bool, out: &mut Output) -> Resu
         return again(&args.out, out);
     }
     let mut ways = ways(args)?;
-    let solvers = candidates(args.solver.as_deref())?;
+    let solvers = candidates(args.solver.as_deref(), out)?;
     let instances = instances(args, out)?;
     if let Some(folder) = &args.benchexec {
         return benchexec(folder, &instances, &solvers, &ways, out);
@@ -283,8 +283,9 @@ fn unique<T: Clone + Ord>(values: impl Iterator<Item = T>) -> Vec<T> {
 }
 
 /// The solvers that are meant, each once: all of them have to be there.
-fn candidates(solvers: Option<&str>) -> Result<Vec<Arc<Candidate>>> {
-    let catalog = configuration::catalog()?;
+fn candidates(solvers: Option<&str>, out: &Output) -> Result<Vec<Arc<Candidate>>> {
+    let configured = Configured::new(out);
+    let catalog = configured.catalog()?;
     let specs = match solvers {
         None => catalog.installed(),
         Some(text) => catalog.specs(text).map_err(Failure::input)?,

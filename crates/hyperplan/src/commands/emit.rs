@@ -2,6 +2,7 @@
 
 use crate::args;
 use crate::config;
+use crate::configuration::Configured;
 use crate::explain::Explain;
 use crate::failure::{Exit, Failure, Result};
 use crate::files::{self, cannot_write, read_source};
@@ -16,7 +17,7 @@ use std::time::Instant;
 const MOST_VALUES: i64 = 100_000;
 
 pub(crate) fn run(args: &args::Emit, file: &Path, out: &mut Output) -> Result {
-    let common = common(args, &config::date(args.date.as_deref())?)?;
+    let common = common(args, &config::date(args.date.as_deref())?, out)?;
     let text = read_source(file)?;
     let (mut target, mut worst) = (None, Exit::Good);
     for setting in settings(args)? {
@@ -57,9 +58,11 @@ pub(crate) fn run(args: &args::Emit, file: &Path, out: &mut Output) -> Result {
 }
 
 /// What all benchmarks of a command have in common.
-pub(super) fn common(args: &args::Emit, date: &str) -> Result<EmitConfig> {
+pub(super) fn common(args: &args::Emit, date: &str, out: &Output) -> Result<EmitConfig> {
+    let configured = Configured::new(out);
+    let solver = |text: &String| config::solver(text, &configured);
     let config = EmitConfig {
-        solver: args.solver.as_deref().map(config::solver).transpose()?,
+        solver: args.solver.as_ref().map(solver).transpose()?,
         track: config::track(args.track),
         status: config::status(args.status),
         comments: !args.no_comments,

@@ -23,7 +23,7 @@ pub(crate) fn run(args: &args::Emit, out: &mut Output) -> Result {
     let Some(folder) = &args.family.folder else {
         return Err(Failure::input("expected a problem file, or --family DIR"));
     };
-    let work = Work::new(args, folder)?;
+    let work = Work::new(args, folder, out)?;
     let head = Head {
         generator: format!("hyperplan {}", env!("CARGO_PKG_VERSION")),
         date: work.date.clone(),
@@ -68,7 +68,7 @@ struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
-    fn new(args: &args::Emit, folder: &'a Path) -> Result<Self> {
+    fn new(args: &args::Emit, folder: &'a Path, out: &Output) -> Result<Self> {
         let wanted = &args.family;
         let family = Family {
             sizes: once(&wanted.sizes),
@@ -98,7 +98,7 @@ impl<'a> Work<'a> {
             let what = "--quantifiers cegis makes incremental benchmarks: add --track incremental";
             return Err(Failure::input(what));
         }
-        let common = emit::common(args, &date)?;
+        let common = emit::common(args, &date, out)?;
         // What cannot matter is left in: a solver has to find that out, which makes the harder benchmarks.
         let common = EmitConfig { limits: Limits { prune: false, ..common.limits }, ..common };
         let deadline = common.deadline.clone();

@@ -25,7 +25,7 @@ const MAP_ROWS: u32 = 40;
 const TABLE_ROWS: usize = 60;
 
 pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Output) -> Result {
-    let config = config::Solve::new(args)?;
+    let config = config::Solve::new(args, out)?;
     let (parameter, loaded) = match &args.minimize {
         None => (None, Loaded::read(&args.problem, out)?),
         Some(wanted) => {

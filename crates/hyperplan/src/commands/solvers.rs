@@ -1,7 +1,7 @@
 //! `hyperplan solvers`: which solvers there are, what each can do, and how to get the others.
 
 use crate::args::{self, Format};
-use crate::configuration;
+use crate::configuration::{self, Configured};
 use crate::failure::{Exit, Result};
 use crate::output::Output;
 use crate::report::json;
@@ -9,7 +9,12 @@ use hyperplan_solver::{Found, Install};
 use serde::Serialize;
 
 pub(crate) fn run(args: &args::Solvers, out: &mut Output) -> Result {
-    let catalog = configuration::catalog()?;
+    if args.trust || args.no_trust {
+        // Nothing is run yet.
+        let done = if args.trust { configuration::trust(out) } else { configuration::distrust(out) };
+        return done.map(|()| Exit::Good);
+    }
+    let catalog = Configured::new(out).catalog()?.clone();
     let found = catalog.discover();
     match args.output.format {
         Format::Json => found.iter().try_for_each(|solver| out.line(json(&Report::new(solver))?))?,

@@ -35,10 +35,11 @@ impl Run {
     }
 }
 
-/// A command in the folder of the specs.
+/// A command in the folder of the specs, of a user who has configured nothing.
 pub(crate) fn command(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_hyperplan"));
     command.current_dir(specs()).args(arguments).stdin(Stdio::null()).env_remove("NO_COLOR");
+    command.env("XDG_CONFIG_HOME", concat!(env!("CARGO_TARGET_TMPDIR"), "/no-configuration"));
     command
 }
 

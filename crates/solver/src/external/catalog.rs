@@ -150,6 +150,13 @@ impl Catalog {
     }
 }
 
+/// Whether a configuration file says what is run, or what a program is told beyond the query: that may do harm. A
+/// file with a mistake says nothing, and cannot be added.
+#[must_use]
+pub fn says_what_to_run(text: &str) -> bool {
+    parse::<File>(text).is_ok_and(|file| file.solver.iter().any(Entry::says_what_to_run))
+}
+
 /// Reads TOML; an error has a place.
 fn parse<T: DeserializeOwned>(text: &str) -> Result<T, (usize, String)> {
     toml::from_str(text).map_err(|error| {
@@ -164,6 +171,31 @@ fn line(text: &str, at: usize) -> usize {
 }
 
 impl Entry {
+    /// Arguments and commands can make a known program write files, so they count.
+    fn says_what_to_run(&self) -> bool {
+        // By name, so that nobody forgets to decide about a new key.
+        let Entry {
+            name: _,
+            like: _,
+            aliases: _,
+            program,
+            arguments,
+            one_shot,
+            incremental: _,
+            assumptions: _,
+            setup,
+            logic,
+            seed,
+            theories: _,
+            quantifiers: _,
+            version,
+            tells_version: _,
+            install: _,
+        } = self;
+        let lists = [arguments, one_shot, setup, version];
+        program.is_some() || lists.iter().any(|list| list.is_some()) || logic.is_some() || seed.is_some()
+    }
+
     fn profile(self, catalog: &Catalog, origin: Option<&Path>) -> Result<Profile, (usize, String)> {
         let (at, name) = (self.name.span().start, self.name.into_inner());
         if let Some(what) = misnamed(&name) {

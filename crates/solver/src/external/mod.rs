@@ -26,7 +26,7 @@ use program::Program;
 use crate::error::Error;
 use crate::session::{Options, Session};
 
-pub use catalog::{Catalog, ConfigError};
+pub use catalog::{Catalog, ConfigError, says_what_to_run};
 pub(crate) use catalog::{demand_at_most, profile, split_list};
 pub(crate) use discover::for_arithmetic;
 pub use discover::{Found, discover};

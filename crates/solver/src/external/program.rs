@@ -90,7 +90,8 @@ pub(super) fn locate(profile: &Profile) -> (Option<PathBuf>, Vec<String>) {
     (path, tried)
 }
 
-/// Where a program is: itself if it is a path, else in the directories of `PATH`.
+/// Where a program is: itself if it is a path, else in the directories of `PATH`. Those that depend on the current folder
+/// do not count, nor does an empty one, which would be that folder: it may be anybody's.
 pub(super) fn search(program: &str) -> (Option<PathBuf>, Vec<String>) {
     if program.contains('/') {
         let path = PathBuf::from(program);
@@ -99,7 +100,7 @@ pub(super) fn search(program: &str) -> (Option<PathBuf>, Vec<String>) {
     }
     let directories = env::var_os("PATH").unwrap_or_default();
     let mut tried = Vec::new();
-    for directory in env::split_paths(&directories) {
+    for directory in env::split_paths(&directories).filter(|directory| directory.is_absolute()) {
         let path = directory.join(program);
         if is_program(&path) {
             return (Some(path), tried);
@@ -108,6 +109,9 @@ pub(super) fn search(program: &str) -> (Option<PathBuf>, Vec<String>) {
         if !tried.contains(&path) {
             tried.push(path);
         }
+    }
+    if tried.is_empty() {
+        tried.push("PATH, which has no absolute directory".to_owned());
     }
     (None, tried)
 }
