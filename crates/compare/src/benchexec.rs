@@ -8,6 +8,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use askama::Template;
+use hyperplan_outlet::write as write_file;
 use serde_json::to_string as quoted;
 
 use crate::paths::relative;
@@ -67,15 +68,16 @@ pub fn write(dir: &Path, problems: &[Problem], solvers: &[Configuration], limit:
         memory: limit.memory_mib.map(|mib| mib.saturating_mul(1 << 20)),
         configurations: configurations(solvers),
     };
-    fs::write(dir.join("hyperplan.xml"), definition.render().map_err(io::Error::other)?)?;
-    fs::write(dir.join("realizable.prp"), "CHECK( realizable )\n")?;
-    fs::write(tool.join("__init__.py"), "")?;
-    fs::write(tool.join("hyperplan.py"), TOOL)?;
+    let write = |path: PathBuf, text: &str| write_file(&path, |to| to.write_all(text.as_bytes()));
+    write(dir.join("hyperplan.xml"), &definition.render().map_err(io::Error::other)?)?;
+    write(dir.join("realizable.prp"), "CHECK( realizable )\n")?;
+    write(tool.join("__init__.py"), "")?;
+    write(tool.join("hyperplan.py"), TOOL)?;
     let from = tasks.canonicalize()?;
     let digits = problems.len().to_string().len();
     for (i, problem) in (1..).zip(problems) {
         let name = format!("{i:0digits$}-{}.yml", plain(&problem.label()));
-        fs::write(tasks.join(name), problem.task(&from)?)?;
+        write(tasks.join(name), &problem.task(&from)?)?;
     }
     Ok(())
 }

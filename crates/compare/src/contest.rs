@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use hyperplan_problem::answer::ReasonCode;
 
-use crate::text::one_line;
 use crate::{Answer, Record, Status};
+use hyperplan_outlet::one_line;
 
 /// What takes part in a comparison: a solver together with everything that was chosen for it.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -11,8 +11,8 @@ use crate::contest::{
     Contest, answer, is_certified, is_query, is_refuted, is_refuted_strategy, is_wrong_model,
 };
 use crate::record::checked;
-use crate::text::one_line;
 use crate::{Answer, Record};
+use hyperplan_outlet::one_line;
 
 /// What is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, thiserror::Error)]

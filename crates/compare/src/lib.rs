@@ -24,7 +24,6 @@ pub mod score;
 mod supervise;
 pub mod table;
 mod terminal;
-mod text;
 mod tree;
 mod witness;
 
@@ -34,7 +33,6 @@ pub use pool::{Event, Setting, prepare, run_all};
 pub use query::{Query, Request};
 pub use record::{Answer, Limit, Record, Status, checked};
 pub use supervise::supervise;
-pub use text::one_line;
 
 use contest::Contest;
 

@@ -7,7 +7,7 @@ use sha2::{Digest as _, Sha256};
 
 use crate::query::Query;
 use crate::record::{Answer, Limit};
-use crate::text::one_line;
+use hyperplan_outlet::one_line;
 
 /// Something to be solved.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@ use std::fmt;
 use hyperplan_problem::answer::ReasonCode;
 use serde::{Deserialize, Serialize};
 
-use crate::text::one_line;
+use hyperplan_outlet::one_line;
 
 /// What a run ended with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]

@@ -61,19 +61,11 @@ pub fn write_all_from(records: &[Record], dir: &Path, log: &str) -> io::Result<V
     let mut written = Vec::new();
     for (name, contents) in files {
         let path = dir.join(name);
-        replace(&path, &contents)?;
+        hyperplan_outlet::write(&path, |to| to.write_all(&contents))?;
         written.push(path);
     }
     remove_stale(dir, &written)?;
     Ok(written)
-}
-
-/// Whoever reads the file gets the old one or the new one, whole.
-fn replace(path: &Path, contents: &[u8]) -> io::Result<()> {
-    let mut partial = path.as_os_str().to_owned();
-    partial.push(".partial");
-    std::fs::write(&partial, contents)?;
-    std::fs::rename(&partial, path)
 }
 
 /// Removes our scatter plots of an earlier report that was about others.

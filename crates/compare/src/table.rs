@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::Record;
 use crate::contest::{Cell, Contest};
 use crate::score::{Score, Scores, scores};
-use crate::text::one_line;
+use hyperplan_outlet::one_line;
 
 /// Names of columns and the rows below.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -214,7 +214,8 @@ const COLUMNS: &str = "\
     limit_wall_s,limit_cpu_s,limit_memory_mib,exit_code,signal,host,variables,assertions,bytes,message,\
     queries";
 
-/// Writes every column of every record as CSV, a line each, whatever is in names and messages.
+/// Writes every column of every record as CSV, a line each, whatever is in names and messages. Text that a spreadsheet
+/// would take for a formula has a `'` before it.
 pub fn csv(records: &[Record], to: impl io::Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(to);
     if !records.is_empty() {
@@ -232,10 +233,17 @@ pub fn csv(records: &[Record], to: impl io::Write) -> io::Result<()> {
 }
 
 fn cell(value: &Value) -> String {
+    let text = shown(value);
+    // With a tab or a line break they may begin too, but these are escaped.
+    let formula = !value.is_number() && text.starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠']);
+    if formula { format!("'{text}") } else { text }
+}
+
+fn shown(value: &Value) -> String {
     match value {
         Value::Null => String::new(),
         Value::String(text) => one_line(text).into_owned(),
-        Value::Array(parts) => parts.iter().map(cell).collect::<Vec<_>>().join(" "),
+        Value::Array(parts) => parts.iter().map(shown).collect::<Vec<_>>().join(" "),
         value => value.to_string(),
     }
 }

@@ -14,6 +14,8 @@ const FEW: usize = 40;
 const GAP: usize = 2;
 /// Names are not made shorter than this.
 const LEAST: usize = 12;
+/// Nor are they longer, where there is no end to a line: comfy-table counts to 65,535.
+const MOST: usize = 10_000;
 /// Columns of scores that a narrow terminal does without, the least important first.
 const DISPENSABLE: [&str; 15] = [
     SOLVER_UNIQUE,
@@ -71,7 +73,8 @@ pub(crate) fn summary(contest: &Contest<'_>, judgement: &Judgement, width: Optio
 pub(crate) fn terminal(sheet: &Sheet) -> String {
     let mut table = Table::new();
     table.load_style(presets::NOTHING).set_content_arrangement(ContentArrangement::Disabled);
-    table.set_header(&sheet.head).add_rows(&sheet.rows);
+    let cells = |row: &[String]| row.iter().map(|cell| end_of(cell, MOST)).collect::<Vec<_>>();
+    table.set_header(cells(&sheet.head)).add_rows(sheet.rows.iter().map(|row| cells(row)));
     for (i, column) in table.column_iter_mut().enumerate() {
         column.set_padding((0, 2));
         if !sheet.text[i] {

@@ -2,6 +2,7 @@
 
 mod sample;
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::{env, fs};
 
@@ -94,6 +95,43 @@ fn names_that_break_lines() {
     assert_eq!(same, records);
 }
 
+/// A spreadsheet takes no text for a formula, and numbers for numbers.
+#[test]
+fn text_is_no_formula() {
+    let cells = |record: &Record| {
+        let mut csv = Vec::new();
+        hyperplan_compare::table::csv(std::slice::from_ref(record), &mut csv).expect("in memory");
+        let text = String::from_utf8(csv).expect("it is text");
+        let (head, row) = text.split_once('\n').expect("two lines");
+        head.split(',')
+            .map(str::to_owned)
+            .zip(row.trim_end().split(',').map(str::to_owned))
+            .collect::<BTreeMap<_, _>>()
+    };
+    for begin in ["=", "+", "-", "@", "＝", "＋", "－", "＠", "\t=", "\r=", "\n=", "'="] {
+        let mut record = run(&format!("{begin}solver"), &format!("{begin}1"), Status::Error, 1.0);
+        record.family = format!("{begin}cmd|' /C calc'!A0");
+        record.message = Some(format!("{begin}2"));
+        record.version = Some(format!("{begin}3"));
+        record.options = format!("{begin}o");
+        record.set = vec![format!("{begin}T=1"), "U=2".to_owned()];
+        record.exit_code = Some(-7);
+        record.wall_s = -0.5;
+        let cells = cells(&record);
+        for name in ["instance", "solver", "family", "message", "version", "options", "set"] {
+            let safe = |c: char| c.is_ascii_alphanumeric() || c == '\'' || c == '\\';
+            assert!(cells[name].starts_with(safe), "{name}: {}", cells[name]);
+            let begin = hyperplan_outlet::one_line(begin);
+            assert!(
+                cells[name].trim_start_matches('\'').starts_with(begin.trim_start_matches('\'')),
+                "{}",
+                cells[name]
+            );
+        }
+        assert_eq!((cells["exit_code"].as_str(), cells["wall_s"].as_str()), ("-7", "-0.5"));
+    }
+}
+
 /// Nothing to show is shown.
 #[test]
 fn odd_ones() {
@@ -140,7 +178,7 @@ fn plots_of_an_earlier_report_go() {
     let names = || -> Vec<String> {
         let entries = fs::read_dir(dir.path()).expect("ours").flatten();
         let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
-        names.filter(|name| name.starts_with("scatter") || name.ends_with(".partial")).collect()
+        names.filter(|name| name.starts_with("scatter") || name.starts_with('.')).collect()
     };
     fs::write(dir.path().join("scatter.svg"), "somebody's").expect("ours");
     let of = ["z3", "cvc5"].map(|solver| run(solver, "a", Status::Sat, 1.0));

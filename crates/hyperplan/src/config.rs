@@ -3,8 +3,9 @@
 use crate::args::{self, ColorWhen};
 use crate::configuration::Configured;
 use crate::failure::{Failure, Result};
+use crate::files::{self, check_writable};
 use crate::guard;
-use crate::output::{Output, check_writable};
+use crate::output::Output;
 use crate::report::Picture;
 use crate::signals;
 use chrono::{DateTime, NaiveDate, Utc};
@@ -28,7 +29,8 @@ impl Solve {
         }
         if let Some(folder) = &args.queries {
             std::fs::create_dir_all(folder).map_err(|e| {
-                Failure::input(format_args!("cannot make directory {}: {e}", folder.display()))
+                let reason = files::reason(&e);
+                Failure::input(format_args!("cannot make directory {}: {reason}", folder.display()))
             })?;
         }
         if args.memory == Some(0) {

@@ -1,11 +1,12 @@
 //! What the planner tells, in the command's words: with the flags that help, and where evidence is kept.
 
 use crate::failure::{Exit, Failure};
+use crate::files::reason;
 use hyperplan_plan::{EncodeError, Error, Evidence, Fallen, Fault, Note, Reason, Unsupported, Wrong};
 use hyperplan_problem::answer::ReasonCode;
-use hyperplan_solver::new_query_file;
+use hyperplan_solver::{Error as SolverError, keep_query};
 use std::fmt::Display;
-use std::io::{self, Write as _};
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// Puts into words what the planner tells.
@@ -18,7 +19,7 @@ pub(crate) struct Explain<'a> {
 impl Explain<'_> {
     /// How a command fails that is about something.
     pub(crate) fn failure(self, about: impl Display, error: &Error) -> Failure {
-        Failure { status: status(error), message: format!("{about}: {}", self.error(error)) }
+        Failure::new(status(error), format_args!("{about}: {}", self.error(error)))
     }
 
     pub(crate) fn error(self, error: &Error) -> String {
@@ -36,6 +37,9 @@ impl Explain<'_> {
                 format!("{error}; its model could not be evaluated on the query, {}", self.keep(query))
             }
             Error::Disagreement { query, .. } => format!("{error}, {}", self.keep(query)),
+            Error::Solver(SolverError::Keep { folder, source }) => {
+                format!("cannot keep queries in {}: {}", folder.display(), reason(source))
+            }
             error => error.to_string(),
         }
     }
@@ -66,14 +70,13 @@ impl Explain<'_> {
     fn keep(self, query: &Evidence) -> String {
         match self.write(query) {
             Ok(path) => format!("which is kept in {}", path.display()),
-            Err(error) => format!("which could not be kept: {error}"),
+            Err(error) => format!("which could not be kept: {}", reason(&error)),
         }
     }
 
     fn write(self, query: &Evidence) -> io::Result<PathBuf> {
         let folder = self.queries.map_or_else(std::env::temp_dir, Path::to_owned);
-        let (path, mut file) = new_query_file(&folder, "hyperplan-fault-", query.solver())?;
-        file.write_all(query.text()).map(|()| path)
+        keep_query(&folder, "hyperplan-fault-", query.solver(), |to| to.write_all(query.text()))
     }
 }
 

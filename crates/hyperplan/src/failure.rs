@@ -31,19 +31,32 @@ impl From<Exit> for ExitCode {
 pub(crate) struct Failure {
     /// The exit status.
     pub(crate) status: Exit,
-    /// The message; empty where everything was said already, as diagnostics.
+    /// The message, on one line; empty where everything was said already, as diagnostics.
     pub(crate) message: String,
+    /// Lines below it, made harmless, if there is more to say.
+    pub(crate) details: String,
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)?;
+        if self.details.is_empty() { Ok(()) } else { write!(f, "\n\n{}", self.details) }
+    }
 }
 
 impl Failure {
+    pub(crate) fn new(status: Exit, message: impl fmt::Display) -> Self {
+        Failure { status, message: message.to_string(), details: String::new() }
+    }
+
     /// Bad usage or input.
     pub(crate) fn input(message: impl fmt::Display) -> Self {
-        Failure { status: Exit::Input, message: message.to_string() }
+        Failure::new(Exit::Input, message)
     }
 
     /// Bad input, and the messages were printed.
     pub(crate) fn said() -> Self {
-        Failure { status: Exit::Input, message: String::new() }
+        Failure::input("")
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, Result};
 use std::fs::File;
-use std::io::{self, BufWriter, Read, Write};
+use std::io::{self, Read, Write};
 use std::path::Path;
 
 /// The most bytes of a file that are read: far more than any map or strategy has.
@@ -74,37 +74,10 @@ pub(crate) fn reason(error: &io::Error) -> String {
     }
 }
 
-/// Writes a file so that it is there whole, or as it was before, whenever this process or the machine ends and however
-/// full the disk is; what is no regular file, such as a device, is written as it comes. How many bytes it has.
+/// Writes a file so that it is there whole, or as it was before; what is no regular file, such as a device, is written
+/// as it comes. How many bytes it has.
 pub(crate) fn write(path: &Path, print: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<u64> {
-    write_whole(path, print).map_err(|e| cannot_write(path, &e))
-}
-
-fn write_whole(path: &Path, print: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<u64> {
-    let known = std::fs::metadata(path).ok();
-    if known.as_ref().is_some_and(|known| !known.is_file()) {
-        let mut device = BufWriter::new(File::create(path)?);
-        print(&mut device)?;
-        return device.flush().map(|()| 0);
-    }
-    // A link stays a link.
-    let path = &if known.is_some() { path.canonicalize()? } else { path.to_owned() };
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut options = tempfile::Builder::new();
-    #[cfg(unix)]
-    options.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = options.tempfile_in(folder)?;
-    let mut buffer = BufWriter::new(file.as_file_mut());
-    print(&mut buffer)?;
-    buffer.flush()?;
-    drop(buffer);
-    if let Some(known) = known {
-        file.as_file().set_permissions(known.permissions())?;
-    }
-    file.as_file().sync_data()?;
-    let bytes = file.as_file().metadata()?.len();
-    file.persist(path)?;
-    Ok(bytes)
+    hyperplan_outlet::write(path, print).map_err(|e| cannot_write(path, &e))
 }
 
 /// As [`write()`], what is in memory.
@@ -115,4 +88,20 @@ pub(crate) fn write_bytes(path: &Path, contents: &[u8]) -> Result<()> {
 /// The failure to write a file.
 pub(crate) fn cannot_write(path: &Path, error: &io::Error) -> Failure {
     Failure::input(format_args!("cannot write {}: {}", name(path), reason(error)))
+}
+
+/// Refuses a file that could not be written after all the work.
+pub(crate) fn check_writable(path: &Path) -> Result<()> {
+    let cannot = |why: String| Failure::input(format_args!("cannot write {}: {why}", name(path)));
+    match path.metadata() {
+        Ok(data) if data.is_dir() => return Err(cannot("it is a directory".to_owned())),
+        Ok(data) if !data.is_file() => return Ok(()),
+        _ => {}
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        return Err(cannot(format!("there is no directory {}", folder.display())));
+    }
+    // It is gone when it is closed.
+    tempfile::tempfile_in(folder).map(|_| ()).map_err(|e| cannot(reason(&e)))
 }

@@ -7,7 +7,7 @@ use crate::load::Beside;
 use crate::output::Output;
 use crate::report;
 use hyperplan_compare::plan::{Instance, Kind, sha256};
-use hyperplan_compare::{Answer, Query, one_line};
+use hyperplan_compare::{Answer, Query};
 use hyperplan_horizon::horizons;
 use hyperplan_problem::{KnownStatus, Loader, Lowered, Overrides, Problem, Value, read};
 use hyperplan_syntax::{Diagnostic, SourceMap};
@@ -35,9 +35,9 @@ pub(crate) fn instances(args: &args::Compare, out: &Output) -> Result<Vec<Arc<In
             Err(failure) => {
                 bad += 1;
                 if args.skip_bad {
-                    out.remark(format_args!("left out: {}", one_line(&failure.message)));
-                } else if !failure.message.is_empty() {
-                    out.error(format_args!("error: {}", failure.message));
+                    out.remark(format_args!("left out: {}", failure.message));
+                } else {
+                    out.failure(&failure);
                 }
             }
         }

@@ -20,13 +20,14 @@ mod trusted;
 
 use clap::Parser as _;
 use failure::{Exit, Result};
+use hyperplan_outlet::one_line;
 use output::Output;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let cli = match args::Cli::try_parse() {
         Ok(cli) => cli,
-        Err(e) => return usage(&e),
+        Err(e) => return usage(e),
     };
     let run = || run(&cli);
     std::thread::scope(|scope| {
@@ -37,8 +38,11 @@ fn main() -> ExitCode {
     })
 }
 
-/// Help and version go to standard output and are no failure; everything else is bad usage.
-fn usage(error: &clap::Error) -> ExitCode {
+/// Help and version go to standard output and are no failure; everything else is bad usage. What was typed is told
+/// without what could do harm, such as the name of a file that a pattern stands for.
+fn usage(error: clap::Error) -> ExitCode {
+    let typed = std::env::args_os().map(|word| one_line(&word.to_string_lossy()).into_owned());
+    let error = args::Cli::try_parse_from(typed).err().unwrap_or(error);
     let status = if error.use_stderr() { Exit::Input } else { Exit::Good };
     // Nothing is left to do if it cannot be printed.
     let _ = error.print();
@@ -55,9 +59,7 @@ fn run(cli: &args::Cli) -> ExitCode {
 fn finish(out: &mut Output, result: Result) -> Exit {
     let result = result.and_then(|status| out.flush().map(|()| status));
     result.unwrap_or_else(|failure| {
-        if !failure.message.is_empty() {
-            out.error(format_args!("error: {}", failure.message));
-        }
+        out.failure(&failure);
         failure.status
     })
 }

@@ -1,9 +1,10 @@
 //! Standard output and standard error: results go to the one, everything else to the other.
 
 use crate::failure::{Failure, Result};
+use crate::files::reason;
+use hyperplan_outlet::one_line;
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
-use std::path::Path;
 
 /// Where a command prints.
 pub(crate) struct Output {
@@ -58,6 +59,14 @@ impl Output {
         self.settle(done)
     }
 
+    /// Prints text of others as it is, but for what would do something to a terminal where there is one.
+    pub(crate) fn verbatim(&mut self, text: &str) -> Result<()> {
+        if !io::stdout().is_terminal() {
+            return self.write(|out| out.write_all(text.as_bytes()));
+        }
+        text.lines().try_for_each(|line| self.line(one_line(line)))
+    }
+
     /// Sends what is still in the buffer.
     pub(crate) fn flush(&mut self) -> Result<()> {
         if self.closed {
@@ -73,34 +82,36 @@ impl Output {
                 self.closed = true;
                 Ok(())
             }
-            other => other.map_err(|e| Failure::input(format!("cannot write standard output: {e}"))),
+            other => other
+                .map_err(|e| Failure::input(format_args!("cannot write standard output: {}", reason(&e)))),
         }
     }
 
-    /// Prints a remark on standard error, unless remarks are not wanted.
+    /// Prints a remark on standard error, on one line, unless remarks are not wanted.
     pub(crate) fn remark(&self, text: impl Display) {
         if !self.quiet {
             self.error(text);
         }
     }
 
-    /// Prints on standard error. There is nothing left to do if that cannot be written.
+    /// Prints a message on standard error, on one line, whatever is in the names and words of others that it tells.
     pub(crate) fn error(&self, text: impl Display) {
+        self.lines(one_line(&text.to_string()));
+    }
+
+    /// Prints lines on standard error in which what is of others was made harmless. There is nothing left to do if they
+    /// cannot be written.
+    pub(crate) fn lines(&self, text: impl Display) {
         let _ = writeln!(io::stderr().lock(), "{text}");
     }
-}
 
-/// Refuses a file that could not be written after all the work.
-pub(crate) fn check_writable(path: &Path) -> Result<()> {
-    if path.is_dir() {
-        return Err(Failure::input(format!("cannot write {}: it is a directory", path.display())));
-    }
-    match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() && !parent.is_dir() => Err(Failure::input(format!(
-            "cannot write {}: there is no directory {}",
-            path.display(),
-            parent.display()
-        ))),
-        _ => Ok(()),
+    /// Says why a command failed, or a part of it.
+    pub(crate) fn failure(&self, failure: &Failure) {
+        if !failure.message.is_empty() {
+            self.error(format_args!("error: {}", failure.message));
+        }
+        if !failure.details.is_empty() {
+            self.lines(format_args!("\n{}", failure.details));
+        }
     }
 }

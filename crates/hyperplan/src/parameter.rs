@@ -163,8 +163,8 @@ impl<'a> Parameter<'a> {
         if lowered.has_errors() {
             let errors: Vec<_> = lowered.diagnostics.into_iter().filter(|d| d.is_error()).collect();
             let errors = render(&sources, &errors, false, crate::report::WIDTH);
-            let message = format_args!("has errors for {} = {value}\n\n{}", self.constant, errors.trim_end());
-            return Err(failure(self.args, message));
+            let failed = failure(self.args, format_args!("has errors for {} = {value}", self.constant));
+            return Err(Failure { details: errors.trim_end().to_owned(), ..failed });
         }
         Ok(lowered.problem)
     }

@@ -1,7 +1,8 @@
 //! How far a comparison is: a bar on a terminal, a line for each run elsewhere.
 
 use crate::output::Output;
-use hyperplan_compare::{Record, Status, checked, one_line};
+use hyperplan_compare::{Record, Status, checked};
+use hyperplan_outlet::one_line;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{self, IsTerminal as _};
 use std::time::{Duration, Instant};
@@ -47,7 +48,9 @@ impl<'a> Progress<'a> {
         let below = if self.verbose { details(record) } else { String::new() };
         match &self.bar {
             None => {
-                self.out.remark(format_args!("[{}/{}] {line}{}{below}", self.done, self.all, self.left()));
+                if !self.out.is_quiet() {
+                    self.out.lines(format_args!("[{}/{}] {line}{}{below}", self.done, self.all, self.left()));
+                }
             }
             Some(bar) => {
                 // What went wrong stays to be read.

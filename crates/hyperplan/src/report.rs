@@ -3,16 +3,23 @@
 use crate::failure::{Exit, Failure, Result};
 use crate::files::write_bytes;
 use crate::output::Output;
+use hyperplan_outlet::is_harmless;
 use hyperplan_render::{Scene, TextStyle, svg, text_map};
 use hyperplan_syntax::{Diagnostic, SourceMap, render};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// One line of JSON.
+/// One line of JSON, which does no harm to a terminal.
 pub(crate) fn json(value: &impl Serialize) -> Result<String> {
     // Our own structs have string keys and finite numbers.
-    serde_json::to_string(value)
-        .map_err(|e| Failure { status: Exit::Bug, message: format!("cannot write JSON: {e}") })
+    let text = serde_json::to_string(value);
+    let text = text.map_err(|e| Failure::new(Exit::Bug, format_args!("cannot write JSON: {e}")))?;
+    if text.chars().all(is_harmless) {
+        return Ok(text);
+    }
+    // What does harm stands in strings, and to a reader of JSON an escape is the same; all of it is below U+10000.
+    let escaped = |c: char| if is_harmless(c) { c.to_string() } else { format!("\\u{:04x}", u32::from(c)) };
+    Ok(text.chars().map(escaped).collect())
 }
 
 /// Width of messages. The same on every terminal, so that messages can be compared.
@@ -25,10 +32,10 @@ const SHOWN: usize = 100;
 pub(crate) fn diagnostics(sources: &SourceMap, diagnostics: &[Diagnostic], out: &Output) {
     let (errors, warnings): (Vec<_>, Vec<_>) = diagnostics.iter().cloned().partition(Diagnostic::is_error);
     if !errors.is_empty() {
-        out.error(rendered(sources, &errors, "errors", out));
+        out.lines(rendered(sources, &errors, "errors", out));
     }
-    if !warnings.is_empty() {
-        out.remark(rendered(sources, &warnings, "warnings", out));
+    if !warnings.is_empty() && !out.is_quiet() {
+        out.lines(rendered(sources, &warnings, "warnings", out));
     }
 }
 
@@ -43,6 +50,7 @@ fn rendered(sources: &SourceMap, diagnostics: &[Diagnostic], what: &str, out: &O
 }
 
 /// A file to draw into, its kind known from its name.
+#[derive(Clone)]
 pub(crate) struct Picture {
     path: PathBuf,
     kind: Kind,

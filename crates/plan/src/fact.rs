@@ -247,6 +247,7 @@ impl Error {
         match self {
             Error::Encode(encode::Error::Interrupted) | Error::Late(_) => Fault::Time,
             Error::Unsupported(_) | Error::Encode(_) | Error::Tape(_) => Fault::Request,
+            Error::Solver(solver::Error::Keep { .. }) => Fault::Request,
             Error::Solver(error) if error.is_unsupported() => Fault::Request,
             Error::Solver(_) | Error::WrongModel { .. } | Error::Disagreement { .. } => Fault::Solver,
             Error::Race(_) => self.worst().map_or(Fault::Solver, Error::fault),
@@ -262,6 +263,7 @@ impl Error {
             Error::Late(unknown) => Reason::Solver(unknown.clone()).code(),
             Error::Encode(_) => ReasonCode::TooLarge,
             Error::Unsupported(_) => ReasonCode::Unsupported,
+            Error::Solver(solver::Error::Keep { .. }) => ReasonCode::Io,
             Error::Solver(error) if error.is_unsupported() => ReasonCode::Unsupported,
             Error::Solver(_) => ReasonCode::SolverFailed,
             Error::WrongModel { .. } => ReasonCode::WrongModel,

@@ -2,6 +2,7 @@
 
 use crate::Error;
 use crate::eval::truth;
+use hyperplan_outlet::is_harmless;
 use hyperplan_problem::{State, System, Trace, Type, Value, VarId};
 
 /// The most cells that are drawn.
@@ -42,6 +43,13 @@ impl Board {
     /// # Errors
     /// If the system has no such place, or too large a one.
     pub fn of(system: &System) -> Result<Board, Error> {
+        let mut board = Self::without_marks(system)?;
+        board.marks = board.marks_of(system);
+        Ok(board)
+    }
+
+    /// The same, but for what stands in the cells, which takes time.
+    pub(crate) fn without_marks(system: &System) -> Result<Board, Error> {
         let mut board = match &system.map {
             Some(map) => Board {
                 width: map.width,
@@ -60,7 +68,6 @@ impl Board {
         if width.saturating_mul(height) > CELL_LIMIT {
             return Err(Error::TooLarge { system: system.name.clone(), width, height, limit: CELL_LIMIT });
         }
-        board.marks = board.marks_of(system);
         Ok(board)
     }
 
@@ -172,5 +179,6 @@ fn letter(label: &str, on_map: Option<char>, taken: &[Mark]) -> char {
     let free = |c: &char| taken.iter().all(|m| m.letter != *c);
     let own = label.chars().filter(|c| c.is_ascii_alphabetic());
     let candidates = own.flat_map(|c| [c.to_ascii_uppercase(), c.to_ascii_lowercase()]);
+    let on_map = on_map.filter(|letter| is_harmless(*letter));
     on_map.into_iter().chain(candidates).chain('1'..='9').find(free).unwrap_or('+')
 }

@@ -19,23 +19,35 @@ const STROKES: [(&str, &str); 6] = [
 ];
 const MARGIN: f64 = 36.0;
 const LEGEND_LINE: f64 = 20.0;
+/// Of a table: the size of its letters, from line to line, and from letter to letter.
+const TABLE_SIZE: f64 = 12.0;
+const TABLE_LINE: f64 = 16.0;
+const TABLE_CHARACTER: f64 = 7.3;
 
-/// The maps of the scene's systems, one under the other, each with its paths and a legend.
+/// The maps of the scene's systems, one under the other, each with its paths and a legend, and below them tables of the
+/// paths of other systems.
 ///
 /// # Errors
-/// If a system has no place in the plane.
+/// If no system has a place in the plane.
 pub fn svg(scene: Scene<'_>) -> Result<String, Error> {
     let mut groups = Vec::new();
     let (mut width, mut height) = (0.0_f64, 0.0_f64);
-    for system in scene.systems()? {
-        let board = Board::of(&scene.problem.systems[system])?;
-        let sheet = Sheet::new(&board);
-        let traces = scene.traces_of(system);
+    let boards = scene.boards()?;
+    for (system, board) in &boards {
+        let sheet = Sheet::new(board);
+        let traces = scene.traces_of(*system);
         let group = sheet.draw(&traces).set("transform", format!("translate(0 {height})"));
         groups.push(group);
         let lines = (traces.len() + board.marks.len()) as f64;
         width = width.max(sheet.width() + 2.0 * MARGIN);
         height += sheet.height() + 2.0 * MARGIN + lines * LEGEND_LINE;
+    }
+    for (heading, table) in scene.tables(&boards) {
+        let lines: Vec<&str> = std::iter::once(heading.as_str()).chain(table.lines()).collect();
+        groups.push(written(&lines).set("transform", format!("translate(0 {height})")));
+        let longest = lines.iter().map(|line| line.chars().count()).max().unwrap_or(0);
+        width = width.max(longest as f64 * TABLE_CHARACTER + 2.0 * MARGIN);
+        height += lines.len() as f64 * TABLE_LINE + MARGIN;
     }
     let title = scene.objective.map_or("map", |o| o.name.as_str());
     let style = "text { font-family: sans-serif; fill: #222 } .axis { font-size: 10px; fill: #666 }";
@@ -51,6 +63,16 @@ pub fn svg(scene: Scene<'_>) -> Result<String, Error> {
         document = document.add(group);
     }
     Ok(format!("{document}\n"))
+}
+
+/// Lines of text, one under the other, whose columns stand under each other.
+fn written(lines: &[&str]) -> Group {
+    let group = Group::new().set("class", "table").set("font-size", TABLE_SIZE);
+    let line = |group: Group, (i, line): (usize, &&str)| {
+        let text = Text::new(*line).set("x", MARGIN).set("y", (i + 1) as f64 * TABLE_LINE);
+        group.add(text.set("xml:space", "preserve").set("style", "font-family: monospace"))
+    };
+    lines.iter().enumerate().fold(group, line)
 }
 
 /// A board and the size of its cells.

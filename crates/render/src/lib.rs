@@ -1,7 +1,8 @@
 //! Maps with the paths of a strategy, as terminal text and as SVG, and traces as tables.
 //!
 //! The same input gives the same output, byte for byte. A system can be drawn if it is a map or has integer range
-//! variables `x` and `y`; everything else gets a table.
+//! variables `x` and `y`; everything else gets a table. A drawing has at least one system that can be drawn; the traces
+//! of others are tables in it.
 
 mod board;
 mod drawing;
@@ -54,7 +55,40 @@ pub struct Scene<'a> {
     pub traces: &'a [Trace],
 }
 
+/// Whether there will be something to draw, once there is a strategy for the objective or a counterexample.
+///
+/// # Errors
+/// If no system that it has paths of can be drawn.
+pub fn can_draw(problem: &Problem, objective: &Objective) -> Result<(), Error> {
+    let systems = objective.leading_block().into_iter().map(|path| objective.paths[path].system);
+    let boards = systems.map(|system| Board::without_marks(&problem.systems[system]).map(|_| ()));
+    // One that can be drawn is enough; else the first says why it cannot.
+    boards.reduce(|all, one| if all.is_ok() { all } else { one.or(all) }).unwrap_or(Err(Error::NoSystem))
+}
+
 impl<'a> Scene<'a> {
+    /// The boards of the systems that can be drawn, one at least.
+    fn boards(&self) -> Result<Vec<(SystemId, Board)>, Error> {
+        let (mut boards, mut reason) = (Vec::new(), Error::NoSystem);
+        for system in self.systems()?.into_iter().rev() {
+            match Board::of(&self.problem.systems[system]) {
+                Ok(board) => boards.push((system, board)),
+                Err(error) => reason = error,
+            }
+        }
+        boards.reverse();
+        if boards.is_empty() { Err(reason) } else { Ok(boards) }
+    }
+
+    /// The traces that are on none of these boards, as tables with their names.
+    fn tables(&self, boards: &[(SystemId, Board)]) -> Vec<(String, String)> {
+        let Some(objective) = self.objective else { return Vec::new() };
+        let var = |trace: &'a Trace| objective.paths.get(trace.path).map(|var| (var, trace));
+        let rest = self.traces.iter().filter_map(var);
+        let rest = rest.filter(|(var, _)| boards.iter().all(|(system, _)| *system != var.system));
+        rest.map(|(var, trace)| (heading(&var.name, trace), table(self.problem, objective, trace))).collect()
+    }
+
     /// The systems to draw, each once, in the order of the objective's paths.
     fn systems(&self) -> Result<Vec<SystemId>, Error> {
         let mut systems = Vec::new();
@@ -82,4 +116,10 @@ impl<'a> Scene<'a> {
             .map(|(i, var, trace)| (i, var.name.as_str(), trace))
             .collect()
     }
+}
+
+/// The line above a trace.
+fn heading(name: &str, trace: &Trace) -> String {
+    let steps = trace.actions.len();
+    format!("{name} ({steps} step{}):", if steps == 1 { "" } else { "s" })
 }

@@ -1,8 +1,8 @@
 //! Traces as tables and lines of text.
 
 use crate::eval::truth;
+use hyperplan_outlet::{blanks, one_line};
 use hyperplan_problem::{Objective, Problem, State, System, Trace, Type, Value};
-use std::fmt::Write as _;
 
 /// A table of a trace: time, the action taken there (`-` at the end), and the value of each variable.
 #[must_use]
@@ -13,7 +13,7 @@ pub fn table(problem: &Problem, objective: &Objective, trace: &Trace) -> String 
     rows[0].extend(system.vars.iter().map(|v| v.name.clone()));
     for (time, state) in trace.states.iter().enumerate() {
         let action = trace.actions.get(time).map_or("-", |a| problem.actions[*a].as_str());
-        let mut row = vec![time.to_string(), action.to_owned()];
+        let mut row = vec![time.to_string(), one_line(action).into_owned()];
         row.extend(system.vars.iter().zip(state.iter()).map(|(var, value)| in_words(&var.ty, *value)));
         rows.push(row);
     }
@@ -25,9 +25,12 @@ pub fn table(problem: &Problem, objective: &Objective, trace: &Trace) -> String 
         let mut line = String::new();
         for (i, (text, &width)) in row.iter().zip(&widths).enumerate() {
             // Numbers are read from the right, names from the left.
-            let _ = if i == 1 { write!(line, "{text:<width$}  ") } else { write!(line, "{text:>width$}  ") };
+            let blanks = blanks(text, width);
+            line += &if i == 1 { [text, blanks.as_str()] } else { [blanks.as_str(), text] }.concat();
+            line += "  ";
         }
-        let _ = writeln!(out, "{}", line.trim_end());
+        out += line.trim_end();
+        out.push('\n');
     }
     out
 }
@@ -36,7 +39,9 @@ fn in_words(ty: &Type, value: Value) -> String {
     match (value, ty) {
         (Value::Bool(b), _) => b.to_string(),
         (Value::Int(n), _) => n.to_string(),
-        (Value::Enum(i), Type::Enum(names)) => names.get(i as usize).cloned().unwrap_or_default(),
+        (Value::Enum(i), Type::Enum(names)) => {
+            names.get(i as usize).map(|name| one_line(name).into_owned()).unwrap_or_default()
+        }
         (Value::Enum(i), _) => i.to_string(),
         (Value::Real(r), _) => r.to_string(),
     }
@@ -59,7 +64,8 @@ pub fn actions_line(problem: &Problem, objective: &Objective, trace: &Trace) -> 
         }
     }
     let run = |(count, name): &(usize, &str)| {
-        if *count == 1 { (*name).to_owned() } else { format!("{name} x{count}") }
+        let name = one_line(name);
+        if *count == 1 { name.into_owned() } else { format!("{name} x{count}") }
     };
     let mut parts: Vec<String> = runs.iter().map(run).collect();
     let idle = trace.actions.len() - moved;

@@ -1,7 +1,7 @@
 //! Maps for terminals.
 
 use crate::board::{Board, Mark};
-use crate::{Error, Scene};
+use crate::{Error, Scene, heading};
 use std::fmt::Write as _;
 
 /// Up to this many columns each cell has room for a letter and an arrow.
@@ -18,35 +18,34 @@ const RESET: &str = "\u{1b}[0m";
 const PATH: &str = "\u{1b}[1;36m";
 const OBSTACLE: &str = "\u{1b}[2m";
 
-/// One map for each path, the bottom row last, with the axes' values; where there are no traces, the bare map.
+/// One map for each path, the bottom row last, with the axes' values; where there are no traces, the bare map. Paths of
+/// systems that have no map are tables below.
 ///
 /// An arrow shows how the path leaves the cell for the last time, so the arrows lead from its start to its end even
 /// where it passes a cell twice; `*` is the end of the path, `X` a crash.
 ///
 /// # Errors
-/// If a system has no place in the plane.
+/// If no system has a place in the plane.
 pub fn text_map(scene: Scene<'_>, style: TextStyle) -> Result<String, Error> {
     let mut out = String::new();
-    for system in scene.systems()? {
-        let board = Board::of(&scene.problem.systems[system])?;
-        let traces = scene.traces_of(system);
+    let boards = scene.boards()?;
+    for (system, board) in &boards {
+        let traces = scene.traces_of(*system);
         if traces.is_empty() {
-            draw(&mut out, &board, &Vec::new(), style);
+            draw(&mut out, board, &Vec::new(), style);
         }
         for (_, name, trace) in traces {
             if !out.is_empty() {
                 out.push('\n');
             }
-            let steps = trace.actions.len();
-            let _ = writeln!(out, "{name} ({steps} step{}):", if steps == 1 { "" } else { "s" });
-            draw(
-                &mut out,
-                &board,
-                &arrows(&board, &board.cells_of(trace), board.crash_time(trace).is_some()),
-                style,
-            );
+            let _ = writeln!(out, "{}", heading(name, trace));
+            let arrows = arrows(board, &board.cells_of(trace), board.crash_time(trace).is_some());
+            draw(&mut out, board, &arrows, style);
         }
-        legend(&mut out, &board);
+        legend(&mut out, board);
+    }
+    for (heading, table) in scene.tables(&boards) {
+        let _ = write!(out, "\n{heading}\n{table}");
     }
     Ok(out)
 }
@@ -133,7 +132,8 @@ fn axis(out: &mut String, board: &Board, margin: usize, wide: bool) {
         let column = margin + x as usize * pitch;
         if line.len() < column {
             let value = board.origin.0 + i64::from(x);
-            line = format!("{line:<column$}{value}");
+            line.extend(std::iter::repeat_n(' ', column - line.len()));
+            let _ = write!(line, "{value}");
         }
     }
     let _ = writeln!(out, "{line}");

@@ -2,11 +2,12 @@
 //!
 //! A symbol is its stem, followed by `@time` where it has one. The mapping is injective and keeps
 //! clear of what SMT-LIB and this writer use themselves:
-//! - `@` in a stem is doubled; `|`, `\`, control characters and `!` are written as `!` escapes;
+//! - `@` in a stem is doubled; `|`, `\`, `!` and what is no sign, such as control characters, are written as `!` escapes;
 //! - a first `$` (our names for shared terms) or `?` (bound variables) is doubled, and a `.`, which
 //!   SMT-LIB reserves as a first character, gets a `!` before it;
 //! - a stem without a time that could be an SMT-LIB word gets a final `@`.
 
+use hyperplan_outlet::is_harmless;
 use std::fmt::Write as _;
 use std::io;
 
@@ -34,7 +35,7 @@ impl Mangled {
                 '!' => text.push_str("!!"),
                 '|' => text.push_str("!p"),
                 '\\' => text.push_str("!b"),
-                c if c.is_control() => {
+                c if !is_harmless(c) => {
                     // Writing to a string cannot fail.
                     let _ = write!(text, "!u{:x};", u32::from(c));
                 }

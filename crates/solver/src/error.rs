@@ -1,6 +1,7 @@
 //! What can go wrong between us and a solver.
 
 use std::io;
+use std::path::PathBuf;
 
 /// Why a solver does not know an answer.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -125,6 +126,14 @@ pub enum Error {
         name: String,
         /// Its words.
         message: String,
+    },
+    /// What was asked and said cannot be kept.
+    #[error("cannot keep queries in {}: {source}", folder.display())]
+    Keep {
+        /// Where it was to be.
+        folder: PathBuf,
+        /// Why it cannot.
+        source: io::Error,
     },
     /// Talking to the operating system failed.
     #[error("{what}: {source}")]

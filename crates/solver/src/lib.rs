@@ -25,4 +25,4 @@ pub use external::{
 };
 pub use open::open;
 pub use session::{Answer, Identity, Options, QuerySize, Session};
-pub use transcript::new_query_file;
+pub use transcript::keep_query;

@@ -4,13 +4,17 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use hyperplan_outlet::create;
 use hyperplan_smt::{Status, write_comment};
 
 use crate::error::Error;
 
-/// The file of one process.
+/// The file of one process. It grows while the process works, so that whoever ends us sees what was asked.
 pub(crate) struct Transcript {
+    path: PathBuf,
     file: BufWriter<File>,
+    /// Why nothing more can be kept.
+    failed: Option<io::Error>,
 }
 
 impl Transcript {
@@ -20,53 +24,56 @@ impl Transcript {
         solver: &str,
         status: Option<Status>,
     ) -> Result<Transcript, Error> {
-        let file = numbered(directory, solver)?;
-        let mut transcript = Transcript { file: BufWriter::new(file) };
+        let (path, file) = numbered(directory, solver).map_err(|source| cannot_keep(directory, source))?;
+        let mut transcript = Transcript { path, file: BufWriter::new(file), failed: None };
         if let Some(status) = status {
             transcript.keep(format!("(set-info :status {})\n", status.text()).as_bytes());
         }
         Ok(transcript)
     }
 
-    /// Keeps a piece. A full disk must not stop the search: failures are ignored.
+    /// Keeps a piece. [`Transcript::flush`] tells if that fails.
     pub(crate) fn keep(&mut self, text: &[u8]) {
-        let _ = self.file.write_all(text);
-    }
-
-    /// Brings what was kept to the file: whoever waits may be killed.
-    pub(crate) fn flush(&mut self) {
-        let _ = self.file.flush();
+        let kept = self.file.write_all(text);
+        self.failed = self.failed.take().or(kept.err());
     }
 
     /// Keeps what the solver said, after what it was told last.
     pub(crate) fn comment(&mut self, text: &str) {
-        let _ = write_comment(&mut self.file, text);
+        let kept = write_comment(&mut self.file, text);
+        self.failed = self.failed.take().or(kept.err());
+    }
+
+    /// Brings what was kept to the file: whoever waits may be killed.
+    pub(crate) fn flush(&mut self) -> Result<(), Error> {
+        let kept = self.failed.take().map_or_else(|| self.file.flush(), Err);
+        kept.map_err(|source| {
+            // What has only a part of a query is none.
+            let _ = fs::remove_file(&self.path);
+            cannot_keep(self.path.parent().unwrap_or(Path::new("")), source)
+        })
     }
 }
 
 impl Drop for Transcript {
     fn drop(&mut self) {
         self.keep(b"(exit)\n");
-        self.flush();
+        // Without that line it can be replayed all the same.
+        let _ = self.file.flush();
     }
 }
 
-/// A new file for a query, in the directory, which is made if need be: the first number that is free.
-pub(crate) fn numbered(directory: &Path, solver: &str) -> Result<File, Error> {
-    let created = new_query_file(directory, "", solver);
-    created.map(|(_, file)| file).map_err(|source| cannot_keep(directory, source))
+/// What files for queries of a solver are called, in order.
+fn names(prefix: &str, solver: &str) -> impl Iterator<Item = String> {
+    let name: String = solver.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    (1..=999_999_u32).map(move |number| format!("{prefix}{number:04}-{name}.smt2"))
 }
 
-/// A new file for a query of a solver, in a directory, which is made if need be. Its name has a number, the first that is
-/// free.
-///
-/// # Errors
-/// When it cannot be made.
-pub fn new_query_file(directory: &Path, prefix: &str, solver: &str) -> io::Result<(PathBuf, File)> {
+/// A new file in a directory, which is made if need be: the first number that is free.
+fn numbered(directory: &Path, solver: &str) -> io::Result<(PathBuf, File)> {
     fs::create_dir_all(directory)?;
-    let name: String = solver.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-    for number in 1..=999_999_u32 {
-        let path = directory.join(format!("{prefix}{number:04}-{name}.smt2"));
+    for name in names("", solver) {
+        let path = directory.join(name);
         match OpenOptions::new().write(true).create_new(true).open(&path) {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             result => return result.map(|file| (path, file)),
@@ -75,6 +82,21 @@ pub fn new_query_file(directory: &Path, prefix: &str, solver: &str) -> io::Resul
     Err(io::ErrorKind::AlreadyExists.into())
 }
 
+/// Keeps a query of a solver in a new file, whole or not at all, in a directory, which is made if need be. Its name has a
+/// number, the first that is free.
+///
+/// # Errors
+/// When it cannot be written, or printed.
+pub fn keep_query(
+    directory: &Path,
+    prefix: &str,
+    solver: &str,
+    print: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<PathBuf> {
+    fs::create_dir_all(directory)?;
+    create(directory, names(prefix, solver), print)
+}
+
 pub(crate) fn cannot_keep(directory: &Path, source: io::Error) -> Error {
-    Error::Io { what: format!("cannot keep queries in {}", directory.display()), source }
+    Error::Keep { folder: directory.to_owned(), source }
 }

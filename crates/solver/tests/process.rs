@@ -226,7 +226,7 @@ fn queries_that_cannot_be_kept_are_an_error() {
     let options = Options { queries: Some(file), ..Options::default() };
     let mut session = open(&Spec::Builtin, &options).expect("it is built in");
     let error = session.check(&small().0, &[], &Deadline::never()).expect_err("a file is no directory");
-    assert!(matches!(error, Error::Io { .. }), "{error}");
+    assert!(matches!(error, Error::Keep { .. }), "{error}");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeSet;
 
+use hyperplan_outlet::{is_harmless, one_line};
 use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 
 use crate::span::{Source, Span};
@@ -71,8 +72,12 @@ impl Excerpt {
             })
             .collect();
 
-        let mut excerpt =
-            Excerpt { name: source.name.clone(), text: String::new(), pieces: Vec::new(), marks: Vec::new() };
+        let mut excerpt = Excerpt {
+            name: one_line(&source.name).into_owned(),
+            text: String::new(),
+            pieces: Vec::new(),
+            marks: Vec::new(),
+        };
         let blank = Mark { offset: 0, length: 0, line: 0, column: 0 };
         excerpt.marks.resize(places.len(), blank);
         for line in shown {
@@ -146,17 +151,14 @@ fn window(content: &str, place: Option<&Place>, width: usize) -> std::ops::Range
 fn harmless(c: char) -> char {
     match c {
         '\t' => c,
-        c if c.is_control() => {
-            if c.len_utf8() == 1 {
-                '?'
-            } else {
-                '\u{bf}'
-            }
-        }
-        '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}' => {
-            '\u{fffd}'
-        }
-        c => c,
+        // Nobody sees these.
+        '\u{200b}'..='\u{200d}' | '\u{feff}' => '\u{fffd}',
+        c if is_harmless(c) => c,
+        c => match c.len_utf8() {
+            1 => '?',
+            2 => '\u{bf}',
+            _ => '\u{fffd}',
+        },
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use hyperplan_outlet::one_line;
 use miette::{Diagnostic as Report, GraphicalReportHandler, GraphicalTheme, LabeledSpan, SourceCode};
 use serde::Serialize;
 
@@ -27,7 +28,7 @@ pub fn render(sources: &SourceMap, diagnostics: &[Diagnostic], color: bool, widt
         let before = out.len();
         if handler.render_report(&mut out, &shown).is_err() {
             out.truncate(before);
-            out.push_str(&diagnostic.message);
+            out.push_str(&shown.message);
             out.push('\n');
         }
     }
@@ -64,21 +65,21 @@ impl Shown {
                 elsewhere.push(Shown::place(sources, *span, words, width));
             }
         }
-        let mut shown = Shown::marked(sources, diagnostic.message.clone(), severity, &places, width);
+        let mut shown = Shown::marked(sources, &diagnostic.message, severity, &places, width);
         shown.code = Some(diagnostic.code);
-        shown.help.clone_from(&diagnostic.help);
+        shown.help = diagnostic.help.as_deref().map(|help| one_line(help).into_owned());
         shown.elsewhere = elsewhere;
         shown
     }
 
     fn place(sources: &SourceMap, span: Span, words: &str, width: usize) -> Shown {
-        Shown::marked(sources, words.to_owned(), miette::Severity::Advice, &[(span, "")], width)
+        Shown::marked(sources, words, miette::Severity::Advice, &[(span, "")], width)
     }
 
     /// A message with places of one source marked; the first is the one the message is about.
     fn marked(
         sources: &SourceMap,
-        message: String,
+        message: &str,
         severity: miette::Severity,
         places: &[(Span, &str)],
         width: usize,
@@ -87,7 +88,7 @@ impl Shown {
         let excerpt = spans.first().map(|main| Excerpt::new(sources.get(main.source), &spans, width));
         let marks = excerpt.iter().flat_map(|excerpt| &excerpt.marks);
         let label = |(nth, ((_, words), mark)): (usize, (&(Span, &str), &Mark))| {
-            let words = (!words.is_empty()).then(|| (*words).to_owned());
+            let words = (!words.is_empty()).then(|| one_line(words).into_owned());
             let span = (mark.offset, mark.length);
             match nth {
                 0 => LabeledSpan::new_primary_with_span(words, span),
@@ -95,6 +96,7 @@ impl Shown {
             }
         };
         let labels = places.iter().zip(marks).enumerate().map(label).collect();
+        let message = one_line(message).into_owned();
         Shown { message, code: None, severity, help: None, excerpt, labels, elsewhere: Vec::new() }
     }
 }

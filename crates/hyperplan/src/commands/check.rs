@@ -7,6 +7,7 @@ use crate::files::read_source;
 use crate::load::Loaded;
 use crate::output::Output;
 use crate::report;
+use hyperplan_outlet::one_line;
 use hyperplan_plan::{Budget, Lints};
 use hyperplan_syntax::{SourceId, parse, print, to_json};
 
@@ -56,6 +57,7 @@ pub(crate) fn run(args: &args::Check, verbose: bool, out: &mut Output) -> Result
             n if verbose => format!(" ({} undecided)", count(n, "question")),
             n => format!(" ({} undecided, -v says which)", count(n, "question")),
         };
+        let file = one_line(&file);
         out.line(format_args!("{file}: {systems}, {objectives}, {}{more}", count(warnings, "warning")))?;
     }
     let denied = args.deny_warnings && warnings > 0;
@@ -79,8 +81,7 @@ fn count(n: usize, what: &str) -> String {
 /// Prints the file as its syntax tree says, with its comments.
 fn formatted(text: &str, out: &mut Output) -> Result {
     let (file, _) = parse(SourceId(0), text);
-    let printed = print(&file, text);
-    out.write(|out| out.write_all(printed.as_bytes()))?;
+    out.verbatim(&print(&file, text))?;
     out.flush()?;
     Ok(Exit::Good)
 }

@@ -4,6 +4,7 @@ use crate::args;
 use crate::config;
 use crate::configuration::Configured;
 use crate::failure::{Exit, Failure, Result};
+use crate::files::{cannot_write, reason};
 use crate::instances::instances;
 use crate::output::Output;
 use crate::progress::Progress;
@@ -52,8 +53,7 @@ pub(crate) fn run(args: &args::Compare, verbose: bool, out: &mut Output) -> Resu
         ));
     }
     left_out(args, &instances, &solvers, out);
-    let cannot =
-        |error: io::Error| Failure::input(format_args!("cannot write {}: {error}", args.out.display()));
+    let cannot = |error: io::Error| cannot_write(&args.out, &error);
     let folder = prepare(&args.out).map_err(cannot)?;
     let (mut log, past) = Log::open(&args.out.join(LOG)).map_err(Failure::input)?;
     past.notes.iter().for_each(|note| out.remark(format_args!("note: {note}")));
@@ -87,7 +87,9 @@ pub(crate) fn run(args: &args::Compare, verbose: bool, out: &mut Output) -> Resu
             out.error(format_args!("interrupted: {kept}"));
             return Ok(Exit::Undecided);
         }
-        Err(failure) => return Err(Failure { message: format!("{}; {kept}", failure.message), ..failure }),
+        Err(failure) => {
+            return Err(Failure::new(failure.status, format_args!("{}; {kept}", failure.message)));
+        }
     }
     let records: Vec<Record> = runs.iter().filter_map(|run| done.remove(&run.key)).collect();
     report(&records, &args.out, out)
@@ -178,7 +180,8 @@ fn report(records: &[Record], folder: &Path, out: &mut Output) -> Result {
     let summary = summary(records, out.width());
     out.line(summary.trim_end())?;
     write_all(records, folder).map_err(|error| {
-        Failure::input(format_args!("cannot write the reports in {}: {error}", folder.display()))
+        let reason = reason(&error);
+        Failure::input(format_args!("cannot write the reports in {}: {reason}", folder.display()))
     })?;
     out.remark(format_args!("note: the whole report is {}", folder.join("report.html").display()));
     Ok(match judge(records).fault() {
@@ -236,7 +239,7 @@ fn benchexec(
         }
     }
     hyperplan_compare::benchexec::write(folder, &problems, &configurations, &ways.limit)
-        .map_err(|error| Failure::input(format_args!("cannot write {}: {error}", folder.display())))?;
+        .map_err(|error| cannot_write(folder, &error))?;
     let dir = folder.display();
     out.remark(format_args!(
         "note: {} and {} in {dir}; to run them: cd {dir} && PYTHONPATH=. benchexec hyperplan.xml",
@@ -296,9 +299,9 @@ fn candidates(solvers: Option<&str>, out: &Output) -> Result<Vec<Arc<Candidate>>
         if candidates.iter().any(|candidate| candidate.name == name) {
             continue;
         }
-        let standalone = catalog.standalone(&spec).map_err(|error| Failure {
-            status: if matches!(error, Error::Missing { .. }) { Exit::Solver } else { Exit::Input },
-            message: error.to_string(),
+        let standalone = catalog.standalone(&spec).map_err(|error| {
+            let status = if matches!(error, Error::Missing { .. }) { Exit::Solver } else { Exit::Input };
+            Failure::new(status, error)
         })?;
         let version = match &standalone {
             Some(standalone) => standalone.version.clone(),
@@ -313,7 +316,8 @@ fn candidates(solvers: Option<&str>, out: &Output) -> Result<Vec<Arc<Candidate>>
 
 /// A digest of the program: the version does not change with every change of the code.
 fn build(program: &Path) -> Result<String> {
-    let cannot = |error| Failure::input(format_args!("cannot read {}: {error}", program.display()));
+    let cannot =
+        |error| Failure::input(format_args!("cannot read {}: {}", program.display(), reason(&error)));
     Ok(sha256(&std::fs::read(program).map_err(cannot)?))
 }
 

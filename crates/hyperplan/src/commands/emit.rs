@@ -5,9 +5,10 @@ use crate::config;
 use crate::configuration::Configured;
 use crate::explain::Explain;
 use crate::failure::{Exit, Failure, Result};
-use crate::files::{self, cannot_write, read_source};
+use crate::files::{self, cannot_write, check_writable, read_source};
 use crate::load::{Consts, Loaded};
-use crate::output::{Output, check_writable};
+use crate::output::Output;
+use hyperplan_outlet::one_line;
 use hyperplan_plan::{EmitConfig, Emitted, Limits, Quantifiers, States, emit};
 use hyperplan_problem::{Type, display};
 use std::path::{Path, PathBuf};
@@ -40,7 +41,7 @@ pub(crate) fn run(args: &args::Emit, file: &Path, out: &mut Output) -> Result {
                     Err(error) => {
                         // The other files may do better.
                         let failure = Explain::default().failure(&objective.name, &error);
-                        out.error(format_args!("error: {}", failure.message));
+                        out.failure(&failure);
                         worst = worst.max(failure.status);
                         continue;
                     }
@@ -91,7 +92,7 @@ fn remarks(loaded: &Loaded, consts: &Consts) -> Vec<String> {
         .collect();
     // Without folders, which are this machine's.
     let file = Path::new(&loaded.file).file_name().unwrap_or_default().to_string_lossy();
-    let mut remarks = vec![format!("Problem: {file}")];
+    let mut remarks = vec![format!("Problem: {}", one_line(&file))];
     if !values.is_empty() {
         remarks.push(format!("Constants: {}.", values.join(", ")));
     }

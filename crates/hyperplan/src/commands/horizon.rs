@@ -5,6 +5,7 @@ use crate::failure::{Exit, Result};
 use crate::load::Loaded;
 use crate::output::Output;
 use hyperplan_horizon::{Horizon, horizons};
+use hyperplan_outlet::{blanks, one_line};
 use hyperplan_problem::answer::Ordered;
 use hyperplan_problem::{FormulaId, Mode, Objective, Semantics};
 use serde::Serialize;
@@ -67,7 +68,7 @@ impl Report {
         let mut text = format!("{}\n", self.objective);
         let width = self.horizon.0.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
         for (name, h) in &self.horizon.0 {
-            text.push_str(&format!("  {name:<width$}  {}\n", h.in_words(objective)));
+            text.push_str(&format!("  {name}{}  {}\n", blanks(name, width), h.in_words(objective)));
         }
         text
     }
@@ -105,7 +106,7 @@ impl PathHorizon {
             let parts = self
                 .reason
                 .iter()
-                .map(|p| format!("\n      +{} at {}:{} {}", p.steps, p.line, p.column, p.formula));
+                .map(|p| format!("\n      +{} at {}:{} {}", p.steps, p.line, p.column, one_line(&p.formula)));
             words.push_str(&parts.collect::<String>());
         }
         words

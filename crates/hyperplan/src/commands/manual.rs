@@ -2,9 +2,10 @@
 
 use crate::args::{self, Cli};
 use crate::failure::{Exit, Failure, Result};
-use crate::files::cannot_write;
+use crate::files::{cannot_write, write};
 use crate::output::Output;
 use clap::CommandFactory as _;
+use std::path::Path;
 
 pub(crate) fn completions(args: &args::Completions, out: &mut Output) -> Result {
     let mut script = Vec::new();
@@ -16,10 +17,10 @@ pub(crate) fn completions(args: &args::Completions, out: &mut Output) -> Result 
 /// All pages into a folder, or one page.
 pub(crate) fn man(args: &args::Man, out: &mut Output) -> Result {
     if let Some(folder) = &args.output {
-        let written =
-            std::fs::create_dir_all(folder).and_then(|()| clap_mangen::generate_to(visible(), folder));
-        written.map_err(|error| cannot_write(folder, &error))?;
-        return Ok(Exit::Good);
+        std::fs::create_dir_all(folder).map_err(|error| cannot_write(folder, &error))?;
+        let mut command = visible().disable_help_subcommand(true);
+        command.build();
+        return write_pages(&command, folder).map(|()| Exit::Good);
     }
     let mut command = visible();
     command.build();
@@ -35,6 +36,14 @@ pub(crate) fn man(args: &args::Man, out: &mut Output) -> Result {
     clap_mangen::Man::new(command).source(source).render(&mut page).map_err(Failure::input)?;
     out.write(|w| w.write_all(&page))?;
     Ok(Exit::Good)
+}
+
+/// Writes the pages of a command and of those below it.
+fn write_pages(command: &clap::Command, folder: &Path) -> Result<()> {
+    let below = command.get_subcommands().filter(|command| !command.is_hide_set());
+    below.into_iter().try_for_each(|command| write_pages(command, folder))?;
+    let page = clap_mangen::Man::new(command.clone());
+    write(&folder.join(page.get_filename()), |to| page.render(to)).map(|_| ())
 }
 
 /// The command line without what is only for hyperplan itself.

@@ -4,9 +4,9 @@ use crate::args;
 use crate::failure::{Exit, Failure, Result};
 use crate::files::cannot_write;
 use crate::output::Output;
-use hyperplan_compare::one_line;
-use std::fs::OpenOptions;
-use std::io::{ErrorKind, Write as _};
+use hyperplan_outlet::{create, one_line};
+use std::io::ErrorKind;
+use std::path::Path;
 
 /// Where it says `FILE`, the name is filled in.
 const STARTER: &str = include_str!("../starter.hp");
@@ -18,12 +18,14 @@ pub(crate) fn run(args: &args::New, out: &mut Output) -> Result {
     };
     // In comments, which end with the line.
     let name = one_line(&path.display().to_string()).into_owned();
-    let opened = OpenOptions::new().write(true).create_new(true).open(path);
-    let mut file = opened.map_err(|error| match error.kind() {
+    let text = STARTER.replace("FILE", &name);
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let file = path.file_name().unwrap_or(path.as_os_str());
+    let written = create(folder, [file], |to| to.write_all(text.as_bytes()));
+    written.map_err(|error| match error.kind() {
         ErrorKind::AlreadyExists => Failure::input(format_args!("{name} is there already")),
         _ => cannot_write(path, &error),
     })?;
-    file.write_all(STARTER.replace("FILE", &name).as_bytes()).map_err(|error| cannot_write(path, &error))?;
     out.remark(format_args!("note: {name} is written; now: hyperplan solve {name}"));
     Ok(Exit::Good)
 }

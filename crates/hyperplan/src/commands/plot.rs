@@ -2,8 +2,9 @@
 
 use crate::args;
 use crate::failure::{Exit, Failure, Result};
+use crate::files::check_writable;
 use crate::load::{Given, Loaded};
-use crate::output::{Output, check_writable};
+use crate::output::Output;
 use crate::report::{Picture, write_picture};
 use hyperplan_render::{Scene, TextStyle, text_map};
 

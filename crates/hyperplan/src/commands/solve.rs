@@ -9,13 +9,14 @@ use crate::guard;
 use crate::load::Loaded;
 use crate::output::Output;
 use crate::parameter::{Parameter, Searched};
-use crate::report::{json, write_picture};
+use crate::report::{Picture, json, write_picture};
+use hyperplan_outlet::one_line;
 use hyperplan_plan::{self as plan, MinimizeError};
 use hyperplan_problem::answer::{
     Answer, Below, Failed, Ordered, ReasonCode, Seconds, Size, Solver, Verdict, Verified, to_witness,
 };
 use hyperplan_problem::{Objective, Quantifier, Strategy, Trace};
-use hyperplan_render::{Board, Scene, TextStyle, actions_line, table, text_map};
+use hyperplan_render::{Board, Scene, TextStyle, actions_line, can_draw, table, text_map};
 use std::time::{Duration, Instant};
 
 /// Larger maps are left to `--plot`.
@@ -35,10 +36,10 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
     };
     let explain = Explain { queries: config.plan.queries.as_deref() };
     let objectives = loaded.selected(args.selection.objective.as_deref(), false)?;
-    let several = objectives.len() > 1;
+    let pictures = pictures(&config, &loaded, &objectives, out)?;
     let mut worst = Exit::Good;
-    let mut saved = String::new();
-    let mut drawn = Ok(());
+    let mut found_so_far = String::new();
+    let (mut saved, mut drawn) = (Ok(()), Ok(()));
     for (index, objective) in objectives.into_iter().enumerate() {
         if out.is_closed() {
             break;
@@ -49,11 +50,11 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
             Ok(found) => found,
             Err((failure, reason_code)) => {
                 // The other objectives may do better.
-                out.error(format_args!("error: {}", failure.message));
+                out.failure(&failure);
                 worst = worst.max(failure.status);
                 if args.failures {
                     let objective = objective.name.clone();
-                    out.line(json(&Failed { objective, reason: failure.message, reason_code })?)?;
+                    out.line(json(&Failed { objective, reason: failure.to_string(), reason_code })?)?;
                 }
                 continue;
             }
@@ -68,6 +69,11 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
         let why = own.as_ref().or_else(|| searched?.undecided.as_ref());
         let answer = answer(loaded, objective, &outcome, searched, why, total);
         let found = Found { loaded, objective, outcome: &outcome, answer: &answer, searched };
+        if let Some(path) = &config.save {
+            // Before anything else that may fail.
+            found_so_far += &(json(&answer)? + "\n");
+            saved = write_bytes(path, found_so_far.as_bytes());
+        }
         match args.output.format {
             Format::Json => out.line(json(&answer)?)?,
             Format::Text if quiet => out.line(found.verdict_line())?,
@@ -78,19 +84,43 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
             }
         }
         outcome.notes.iter().for_each(|note| out.remark(format_args!("note: {}", explain.note(note))));
-        if let (Some(picture), Some(_)) = (&config.plot, &outcome.witness) {
-            let named = several.then(|| picture.for_objective(&objective.name));
-            // What was found is saved even if it cannot be drawn.
-            drawn = drawn.and(write_picture(found.scene(), named.as_ref().unwrap_or(picture)));
+        if let (Some(picture), Some(_)) = (&pictures[index], &outcome.witness) {
+            drawn = drawn.and(write_picture(found.scene(), picture));
         }
-        saved.push_str(&json(&answer)?);
-        saved.push('\n');
         worst = worst.max(status(&answer));
     }
-    if let Some(path) = &config.save {
-        write_bytes(path, saved.as_bytes())?;
+    for failure in [saved, drawn].into_iter().filter_map(Result::err) {
+        out.failure(&failure);
+        worst = worst.max(failure.status);
     }
-    drawn.map(|()| worst)
+    Ok(worst)
+}
+
+/// The files to draw into, one for each objective. One that cannot be drawn has none; where all are such, there is no need
+/// to search first.
+fn pictures(
+    config: &config::Solve,
+    loaded: &Loaded,
+    objectives: &[&Objective],
+    out: &Output,
+) -> Result<Vec<Option<Picture>>> {
+    let Some(picture) = &config.plot else { return Ok(objectives.iter().map(|_| None).collect()) };
+    let mut pictures = Vec::new();
+    for objective in objectives {
+        pictures.push(match can_draw(&loaded.problem, objective) {
+            Ok(()) if objectives.len() == 1 => Some(picture.clone()),
+            Ok(()) => Some(picture.for_objective(&objective.name)),
+            Err(error) if objectives.len() == 1 => return Err(Failure::input(error)),
+            Err(error) => {
+                out.remark(format_args!("note: {} will have no picture: {error}", objective.name));
+                None
+            }
+        });
+    }
+    if pictures.iter().all(Option::is_none) {
+        return Err(Failure::input("none of the objectives can be drawn"));
+    }
+    Ok(pictures)
 }
 
 /// The outcome for an objective, or for the least value of a constant.
@@ -189,7 +219,7 @@ impl<'a> Found<'a> {
 
     fn verdict_line(&self) -> String {
         if let Some(searched) = self.searched {
-            return format!("{}: {}", self.objective.name, searched.words);
+            return format!("{}: {}", self.objective.name, one_line(&searched.words));
         }
         let verdict = match self.answer.verdict {
             Verdict::Realizable => "realizable",
@@ -197,7 +227,7 @@ impl<'a> Found<'a> {
             Verdict::Unknown => "unknown",
         };
         match &self.answer.reason {
-            Some(reason) => format!("{}: {verdict}: {reason}", self.objective.name),
+            Some(reason) => format!("{}: {verdict}: {}", self.objective.name, one_line(reason)),
             None => format!("{}: {verdict}", self.objective.name),
         }
     }
@@ -230,12 +260,14 @@ impl<'a> Found<'a> {
             let actions = actions_line(&self.loaded.problem, self.objective, trace);
             text.push_str(&format!("{}: {actions}\n", self.name(trace)));
         }
-        if self.drawable(strategy)
-            && let Ok(map) = text_map(self.scene(), TextStyle { color })
+        let (drawn, written): (Vec<Trace>, Vec<Trace>) =
+            strategy.traces.iter().cloned().partition(|trace| self.is_drawable(trace));
+        if !drawn.is_empty()
+            && let Ok(map) = text_map(Scene { traces: &drawn, ..self.scene() }, TextStyle { color })
         {
-            return text + "\n" + &map + "\n";
+            text += &format!("\n{map}");
         }
-        for trace in strategy.traces.iter().filter(|t| t.states.len() <= TABLE_ROWS) {
+        for trace in written.iter().filter(|t| t.states.len() <= TABLE_ROWS) {
             let name = self.name(trace);
             text.push_str(&format!("\n{name}:\n{}", table(&self.loaded.problem, self.objective, trace)));
         }
@@ -246,12 +278,10 @@ impl<'a> Found<'a> {
         self.objective.paths.get(trace.path).map_or("", |p| p.name.as_str())
     }
 
-    fn drawable(&self, strategy: &Strategy) -> bool {
-        strategy.traces.iter().all(|trace| {
-            let system = self.objective.paths.get(trace.path).map(|p| &self.loaded.problem.systems[p.system]);
-            let board = system.and_then(|s| Board::of(s).ok());
-            board.is_some_and(|b| b.width <= MAP_COLUMNS && b.height <= MAP_ROWS)
-        })
+    fn is_drawable(&self, trace: &Trace) -> bool {
+        let system = self.objective.paths.get(trace.path).map(|p| &self.loaded.problem.systems[p.system]);
+        let board = system.and_then(|s| Board::of(s).ok());
+        board.is_some_and(|b| b.width <= MAP_COLUMNS && b.height <= MAP_ROWS)
     }
 
     fn checked(&self) -> String {
@@ -267,7 +297,7 @@ impl<'a> Found<'a> {
     fn effort(&self, verbose: bool) -> String {
         let Answer { solver, quantifiers, states, iterations, size, seconds, .. } = self.answer;
         let rounds = if *iterations == 1 { "round" } else { "rounds" };
-        let name = format!("{} {}", solver.name, solver.version);
+        let name = one_line(&format!("{} {}", solver.name, solver.version)).into_owned();
         let mut text = format!(
             "{}, quantifiers {quantifiers}, states {states}, {iterations} {rounds}, {:.3} s\n",
             name.trim_end(),

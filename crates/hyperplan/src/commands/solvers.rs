@@ -5,6 +5,7 @@ use crate::configuration::{self, Configured};
 use crate::failure::{Exit, Result};
 use crate::output::Output;
 use crate::report::json;
+use hyperplan_outlet::{blanks, one_line};
 use hyperplan_solver::{Found, Install};
 use serde::Serialize;
 
@@ -19,7 +20,7 @@ pub(crate) fn run(args: &args::Solvers, out: &mut Output) -> Result {
     match args.output.format {
         Format::Json => found.iter().try_for_each(|solver| out.line(json(&Report::new(solver))?))?,
         Format::Text => {
-            let width = found.iter().map(|s| s.name.len()).max().unwrap_or(0);
+            let width = found.iter().map(|s| s.name.chars().count()).max().unwrap_or(0);
             let text: String = found.iter().map(|solver| describe(solver, width)).collect();
             out.line(text.trim_end())?;
             for file in catalog.files() {
@@ -55,10 +56,9 @@ fn describe(solver: &Found, width: usize) -> String {
             lines.push(solver.hint.clone());
         }
     }
-    let mut text = format!("{:<width$}  ", solver.name);
-    text.push_str(&lines.join(&format!("\n{:indent$}", "", indent = width + 2)));
-    text.push('\n');
-    text
+    let lines: Vec<_> = lines.iter().map(|line| one_line(line)).collect();
+    let below = format!("\n{}", blanks("", width + 2));
+    format!("{}{}  {}\n", solver.name, blanks(&solver.name, width), lines.join(&below))
 }
 
 #[derive(Serialize)]

@@ -7,6 +7,7 @@ use crate::files::{self, read_source, write_bytes};
 use crate::load::{Given, Loaded};
 use crate::output::Output;
 use crate::report;
+use hyperplan_outlet::one_line;
 use hyperplan_plan::strategy_of_model;
 use hyperplan_problem::answer::{WitnessPath, to_witness};
 use hyperplan_problem::{Objective, Problem, Quantifier, Strategy, Trace};
@@ -156,9 +157,9 @@ impl Report {
         let mut text = match &self.reason {
             None => format!("{}: the {role} holds, verified by search\n", self.objective),
             Some(reason) if self.verdict == "fails" => {
-                format!("{}: the {role} fails: {reason}\n", self.objective)
+                format!("{}: the {role} fails: {}\n", self.objective, one_line(reason))
             }
-            Some(reason) => format!("{}: undecided: {reason}\n", self.objective),
+            Some(reason) => format!("{}: undecided: {}\n", self.objective, one_line(reason)),
         };
         if let Check::Fails(Defeat::Paths(traces)) = verdict {
             for trace in traces {

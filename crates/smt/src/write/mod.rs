@@ -12,6 +12,7 @@ mod rsmt2;
 
 use std::io::{self, Write as _};
 
+use hyperplan_outlet::one_line;
 use rustc_hash::FxHashMap;
 
 use crate::features::logic;
@@ -163,8 +164,11 @@ pub fn write_header(w: &mut impl io::Write, options: &WriteOptions, logic: &str)
     writeln!(w, "(set-logic {logic})")?;
     if let Some(source) = source {
         // What would end the quoted symbol cannot be escaped, only replaced.
-        let source = source.replace('|', "!").replace('\\', "/");
-        writeln!(w, "(set-info :source |\n{}\n|)", source.trim_matches('\n'))?;
+        w.write_all(b"(set-info :source |\n")?;
+        for line in source.trim_matches('\n').lines() {
+            writeln!(w, "{}", one_line(line).replace('|', "!").replace('\\', "/"))?;
+        }
+        w.write_all(b"|)\n")?;
     }
     for (key, text) in [("license", license), ("category", category)] {
         if let Some(text) = text {
@@ -177,14 +181,13 @@ pub fn write_header(w: &mut impl io::Write, options: &WriteOptions, logic: &str)
     Ok(())
 }
 
-/// Writes lines of comment.
+/// Writes lines of comment. What would end them for some readers, or do something to a terminal, is written as an escape.
 ///
 /// # Errors
 /// When writing fails.
 pub fn write_comment(w: &mut impl io::Write, text: &str) -> io::Result<()> {
     for line in text.lines() {
-        // A lone carriage return would end the comment for some readers.
-        writeln!(w, "; {}", line.replace('\r', " ").trim_end())?;
+        writeln!(w, "; {}", one_line(line.trim_end()))?;
     }
     Ok(())
 }

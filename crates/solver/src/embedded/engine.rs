@@ -10,7 +10,7 @@ use super::worker::Worker;
 use crate::deadline::Deadline;
 use crate::error::Error;
 use crate::session::{Answer, Identity, Options, QuerySize, Session};
-use crate::transcript::{cannot_keep, numbered};
+use crate::transcript::{cannot_keep, keep_query};
 
 /// The embedded engine.
 pub(crate) struct Engine {
@@ -55,8 +55,8 @@ impl Engine {
         let Some(directory) = &self.options.queries else { return Ok(()) };
         let header = Header { status: self.options.status, ..Header::default() };
         let options = WriteOptions { header, assumptions: assumptions.to_vec(), ..WriteOptions::default() };
-        let mut file = numbered(directory, &self.name)?;
-        write_script(&mut file, script, &options).map_err(|source| cannot_keep(directory, source))
+        let kept = keep_query(directory, "", &self.name, |mut to| write_script(&mut to, script, &options));
+        kept.map(|_| ()).map_err(|source| cannot_keep(directory, source))
     }
 
     /// Whether the script is satisfiable under the assumptions, after encoding what is new of it.

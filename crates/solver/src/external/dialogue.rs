@@ -157,16 +157,18 @@ impl Dialogue {
     }
 
     /// Finds out the version, where that was not done yet and the solver tells it.
-    fn learn_version(&self, running: &mut Running) {
+    fn learn_version(&self, running: &mut Running) -> Result<(), Error> {
         if self.program.is_to_tell_version() && running.exchange.is_open() {
             running.exchange.send(VERSION.to_vec(), &self.deadline);
-            self.hear_version(running);
+            self.hear_version(running)?;
         }
+        Ok(())
     }
 
-    fn hear_version(&self, running: &mut Running) {
-        let version = running.exchange.version(&self.deadline);
+    fn hear_version(&self, running: &mut Running) -> Result<(), Error> {
+        let version = running.exchange.version(&self.deadline)?;
         self.program.version.learn(&version.unwrap_or_default());
+        Ok(())
     }
 
     /// Values of symbols that the solver knows. All is asked at once, the version too, so that nobody waits for
@@ -190,7 +192,7 @@ impl Dialogue {
             values.extend(running.exchange.values(script, asked, &self.deadline)?);
         }
         if version {
-            self.hear_version(running);
+            self.hear_version(running)?;
         }
         Ok(values)
     }
@@ -230,14 +232,14 @@ impl Dialogue {
             None => return Ok(Answer::Unknown(deadline.reason())),
             Some(Answer::Unknown(Unknown::Unsaid)) => {
                 running.exchange.send(REASON.to_vec(), deadline);
-                Answer::Unknown(running.exchange.reason(0, deadline))
+                Answer::Unknown(running.exchange.reason(0, deadline)?)
             }
             Some(answer) => answer,
         };
         // While values are wanted, the model is not to be put at risk.
         self.has_model = answer == Answer::Sat;
         if !self.has_model {
-            self.learn_version(&mut running);
+            self.learn_version(&mut running)?;
         }
         self.running = Some(running);
         Ok(answer)

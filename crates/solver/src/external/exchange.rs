@@ -75,9 +75,10 @@ impl Exchange {
         !self.lost && !self.process.has_ended()
     }
 
-    fn next(&mut self, deadline: &Deadline) -> Next {
+    /// What comes next. That it cannot be kept, or what was sent before, is an error.
+    fn next(&mut self, deadline: &Deadline) -> Result<Next, Error> {
         if let Some(transcript) = &mut self.transcript {
-            transcript.flush();
+            transcript.flush()?;
         }
         let next = self.process.next(deadline);
         if let Some(transcript) = &mut self.transcript {
@@ -86,8 +87,9 @@ impl Exchange {
                 Next::Ended => transcript.comment("(no more output)"),
                 Next::Deadline => transcript.comment(&format!("({})", deadline.reason())),
             }
+            transcript.flush()?;
         }
-        next
+        Ok(next)
     }
 
     /// Refuses a process that has spoken before it was asked: its replies are out of step.
@@ -119,7 +121,7 @@ impl Exchange {
     /// The answer to a check, from what the solver says; `None` at the deadline.
     pub(super) fn answer(&mut self, deadline: &Deadline) -> Result<Option<Answer>, Error> {
         loop {
-            let reply = match self.next(deadline) {
+            let reply = match self.next(deadline)? {
                 Next::Deadline => return Ok(None),
                 Next::Ended => return Err(self.crashed()),
                 Next::Reply(reply) => reply,
@@ -141,28 +143,28 @@ impl Exchange {
 
     /// Why the solver said unknown, in the reply to [`REASON`] after so many that do not matter. A solver that does not say
     /// so soon is not waited for, and not asked any more.
-    pub(super) fn reason(&mut self, after: usize, deadline: &Deadline) -> Unknown {
+    pub(super) fn reason(&mut self, after: usize, deadline: &Deadline) -> Result<Unknown, Error> {
         let deadline = deadline.within(PATIENCE);
         for _ in 0..after {
-            self.next(&deadline);
+            self.next(&deadline)?;
         }
-        let reason = match self.next(&deadline) {
+        let reason = match self.next(&deadline)? {
             Next::Reply(reply) => reply::reason(&reply),
             Next::Ended | Next::Deadline => None,
         };
         self.lost = reason.is_none();
-        reason.map_or(Unknown::Unsaid, Unknown::from)
+        Ok(reason.map_or(Unknown::Unsaid, Unknown::from))
     }
 
     /// What the solver says its version is, after [`VERSION`] was sent. One that does not say so soon is not asked any
     /// more.
-    pub(super) fn version(&mut self, deadline: &Deadline) -> Option<String> {
-        let version = match self.next(&deadline.within(PATIENCE)) {
+    pub(super) fn version(&mut self, deadline: &Deadline) -> Result<Option<String>, Error> {
+        let version = match self.next(&deadline.within(PATIENCE))? {
             Next::Reply(reply) => Some(reply.text().to_owned()).filter(|text| text.contains(":version")),
             Next::Ended | Next::Deadline => None,
         };
         self.lost = version.is_none();
-        version
+        Ok(version)
     }
 
     /// The values in the reply to a `get-value` about those symbols.
@@ -173,7 +175,7 @@ impl Exchange {
         deadline: &Deadline,
     ) -> Result<Vec<Value>, Error> {
         let reply = loop {
-            match self.next(deadline) {
+            match self.next(deadline)? {
                 Next::Deadline => return Err(Error::Deadline { name: self.name.clone() }),
                 Next::Ended => return Err(self.crashed()),
                 Next::Reply(reply) => match reply::meaning(&reply) {

@@ -54,7 +54,7 @@ impl OneShot {
             return Ok(Answer::Unknown(deadline.reason()));
         };
         if asks_version {
-            self.program.version.learn(&exchange.version(deadline).unwrap_or_default());
+            self.program.version.learn(&exchange.version(deadline)?.unwrap_or_default());
         }
         match answer {
             Answer::Sat => {
@@ -67,7 +67,7 @@ impl OneShot {
                 Ok(Answer::Sat)
             }
             Answer::Unknown(Unknown::Unsaid) => {
-                Ok(Answer::Unknown(exchange.reason(symbols.chunks(ASK).len(), deadline)))
+                Ok(Answer::Unknown(exchange.reason(symbols.chunks(ASK).len(), deadline)?))
             }
             answer => Ok(answer),
         }

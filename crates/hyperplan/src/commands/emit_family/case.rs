@@ -270,8 +270,8 @@ fn parsed(text: &str) -> Result<Problem> {
     let mut sources = SourceMap::new();
     let lowered = read(&mut sources, "problem.hp", text, &NoFiles, &Overrides::default());
     if lowered.has_errors() {
-        let message = format!("this is a bug in hyperplan: a problem that it made has errors\n{text}");
-        return Err(Failure { status: failure::Exit::Bug, message });
+        let message = "this is a bug in hyperplan: a problem that it made has errors";
+        return Err(Failure { details: text.to_owned(), ..Failure::new(failure::Exit::Bug, message) });
     }
     Ok(lowered.problem)
 }
