@@ -156,7 +156,8 @@ fn strangers_name_no_programs() {
     let inner = project.path().join("maps");
     fs::create_dir(&inner).expect("ours");
     let program = fake.program().display().to_string();
-    let solve = |name: &str| solve_in(&inner, user.path(), &["--solver", name]);
+    let options = |name| ["--solver", name, "--quantifiers", "expand"];
+    let solve = |name| solve_in(&inner, user.path(), &options(name));
     let run = |option: &str| run_in(&inner, user.path(), &["solvers", option]);
     for danger in [
         format!("name = \"z3\"\nprogram = \"{program}\""),
@@ -195,8 +196,8 @@ fn strangers_name_no_programs() {
     assert_eq!(run("--trust").status, 0);
     let other = tempfile::tempdir().expect("a temporary folder");
     fs::copy(&file, other.path().join("hyperplan.toml")).expect("ours");
-    assert_eq!(solve_in(other.path(), user.path(), &["--solver", "mine"]).status, 4);
-    assert_eq!(solve_in(&inner, other.path(), &["--solver", "mine"]).status, 4);
+    assert_eq!(solve_in(other.path(), user.path(), &options("mine")).status, 4);
+    assert_eq!(solve_in(&inner, other.path(), &options("mine")).status, 4);
     assert_eq!(run_in(user.path(), user.path(), &["solvers", "--trust"]).status, 2);
 }
 
@@ -222,7 +223,8 @@ fn the_current_folder_is_no_place_for_programs() {
     let rooms = specs().join("rooms.hp");
     for path in ["", ":", ".", "./", ":/no/such:"] {
         for solver in ["z3", "z3 -in"] {
-            let mut command = command(&["solve", text(&rooms), "--objective", "sp", "--solver", solver]);
+            let solve = ["solve", text(&rooms), "--objective", "sp", "--quantifiers", "expand"];
+            let mut command = command(&[&solve[..], &["--solver", solver]].concat());
             command.current_dir(project.path()).env("XDG_CONFIG_HOME", user.path()).env("PATH", path);
             let run = Run::new(command.output().expect("built"));
             assert_eq!((run.status, fake.begun(), shell.begun()), (4, 0, 0), "{path:?}: {}", run.stderr);

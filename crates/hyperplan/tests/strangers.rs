@@ -102,7 +102,7 @@ fn words_on_the_command_line() {
     ] {
         quiet(2, arguments);
     }
-    quiet(4, &["solve", "rooms.hp", "--objective", "sp", "--solver", NASTY]);
+    quiet(4, &["solve", "rooms.hp", "--objective", "sp", "--quantifiers", "expand", "--solver", NASTY]);
 }
 
 /// A graph may call its states and actions anything that is text.
@@ -198,11 +198,54 @@ fn words_of_solvers() {
         for arguments in [
             &["solvers"][..],
             &["solvers", "--format", "json"],
-            &["solve", "rooms.hp", "--objective", "sp", "--solver", "fake"],
-            &["solve", "rooms.hp", "--objective", "sp", "--solver", "fake", "--format", "json"],
-            &["solve", "rooms.hp", "--objective", "sp", "--solver", "fake,builtin"],
-            &["solve", "rooms.hp", "--objective", "sp", "--cross-check", "fake", "--set", "T=1"],
-            &["compare", "rooms.hp", "--objective", "sp", "--solver", "fake", "-v", "--out", text(&out)],
+            &["solve", "rooms.hp", "--objective", "sp", "--quantifiers", "expand", "--solver", "fake"],
+            &[
+                "solve",
+                "rooms.hp",
+                "--objective",
+                "sp",
+                "--quantifiers",
+                "expand",
+                "--solver",
+                "fake",
+                "--format",
+                "json",
+            ],
+            &[
+                "solve",
+                "rooms.hp",
+                "--objective",
+                "sp",
+                "--quantifiers",
+                "expand",
+                "--solver",
+                "fake,builtin",
+            ],
+            &[
+                "solve",
+                "rooms.hp",
+                "--objective",
+                "sp",
+                "--quantifiers",
+                "expand",
+                "--cross-check",
+                "fake",
+                "--set",
+                "T=1",
+            ],
+            &[
+                "compare",
+                "rooms.hp",
+                "--objective",
+                "sp",
+                "--quantifiers",
+                "expand",
+                "--solver",
+                "fake",
+                "-v",
+                "--out",
+                text(&out),
+            ],
         ] {
             let mut command = command(arguments);
             command.env("XDG_CONFIG_HOME", user.path());
