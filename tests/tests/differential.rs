@@ -201,6 +201,11 @@ impl Way {
         let tight = Limits { layer_states: 40, pairs: 12, swept: 30, residuals: 8, ..usual };
         let mut ways = Vec::new();
         for &quantifiers in quantifiers {
+            if quantifiers == Quantifiers::Explicit {
+                let states = Some(States::Onehot);
+                ways.extend([usual, unpruned].map(|limits| Way { quantifiers, states, limits }));
+                continue;
+            }
             for states in [States::Onehot, States::Enum, States::Bitvec, States::Int, States::Real] {
                 ways.push(Way { quantifiers, states: Some(states), limits: usual });
             }
@@ -359,7 +364,7 @@ fn the_embedded_solver_answers_as_brute_force_does() {
 }
 
 fn embedded_solver_answers(cases: u64) {
-    let ways = [Quantifiers::Auto, Quantifiers::Cegis, Quantifiers::Expand];
+    let ways = [Quantifiers::Auto, Quantifiers::Cegis, Quantifiers::Expand, Quantifiers::Explicit];
     let mut answers = Answers::default();
     let mut tally = Tally::default();
     for seed in seeds(cases) {

@@ -1,5 +1,6 @@
 //! What the tests of the modules share, and soundness by brute force: nothing is excluded that counts.
 
+use crate::belief::{Belief, believe};
 use crate::goal::Goal;
 use crate::layers::Layers;
 use crate::reach::Question;
@@ -133,6 +134,34 @@ proptest! {
             for (q, q_run) in others.iter().filter(|_| alone && within(run, &kept)) {
                 prop_assert!(satisfied(&arena, p, q) || within(q_run, &defeats), "{:?} {:?}", p, q);
             }
+        }
+    }
+
+    /// The explicit search says what listing all paths says, with layers and without; where it gives up early, nothing.
+    #[test]
+    fn beliefs_are_right(
+        system in system(),
+        formula in formula(&["p", "q"]),
+        exists in any::<bool>(),
+        prune in any::<bool>(),
+        budget in prop_oneof![Just(usize::MAX), 0..40usize],
+    ) {
+        let prefix = if exists { "exists p. forall q." } else { "forall p. exists q." };
+        let problem = objective(&system, prefix, &formula);
+        let mut arena = arena(&problem);
+        arena.task.limits.prune = prune;
+        let goal = Goal::new(&arena.task.objective.formula, exists);
+        let (all, others) = (runs(&arena, P), runs(&arena, Q));
+        prop_assume!(!others.is_empty());
+        let wins = |p: &Trace| others.iter().all(|(q, _)| satisfied(&arena, p, q) == exists);
+        match believe(&arena, 1, &goal, budget).expect("it is small") {
+            Belief::Found(found) => {
+                prop_assert_eq!(found.len(), 1);
+                prop_assert!(wins(&found[0].trace(P, arena.task.system(P))));
+            }
+            Belief::Hopeless => prop_assert!(!all.iter().any(|(p, _)| wins(p))),
+            Belief::Open => prop_assert!(budget < usize::MAX),
+            Belief::Unfit => prop_assert!(false, "all atoms are known"),
         }
     }
 

@@ -76,7 +76,7 @@ fn the_embedded_solver_finds_what_is_defined() {
 }
 
 pub(super) fn embedded_solver_finds(cases: u64) {
-    let ways = [Quantifiers::Auto, Quantifiers::Cegis, Quantifiers::Expand];
+    let ways = [Quantifiers::Auto, Quantifiers::Cegis, Quantifiers::Expand, Quantifiers::Explicit];
     let mut answers = Answers::default();
     let mut tally = Tally::default();
     for seed in seeds(cases) {

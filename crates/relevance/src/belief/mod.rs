@@ -90,6 +90,9 @@ fn narrowed<const N: usize>(
         budget: arena.task.limits.pairs,
     };
     let alone = |at: usize, slack| {
+        if !arena.task.limits.prune {
+            return Ok(Explored { layers: [Layers { at: Vec::new() }], lossy: false });
+        }
         let wants = question(if at < leading { goal } else { &against }, slack);
         reach::layers(&wants.about([paths[at]]))
     };
