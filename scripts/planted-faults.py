@@ -28,6 +28,7 @@ def main() -> None:
     parser.add_argument("names", nargs="*", metavar="NAME", help="only these")
     parser.add_argument("--sample", type=int, metavar="N", help="only N of them, at random")
     parser.add_argument("--seed", type=int, default=0, help="which N [0]")
+    parser.add_argument("--patience", type=int, default=PATIENCE, metavar="SECONDS", help="what hangs [%(default)s]")
     parser.add_argument("--list", action="store_true", help="say where each applies, and plant none")
     arguments = parser.parse_args()
     table = tomllib.loads((ROOT / "scripts" / "faults.toml").read_text())
@@ -51,12 +52,12 @@ def main() -> None:
     refresh()
     commands = {f["name"]: ["cargo", "test", "--quiet", *shlex.split(table["tests"][f["test"]])] for f in chosen}
     for words in {tuple(words) for words in commands.values()}:
-        passed, output = run(words)
+        passed, output = run(words, arguments.patience)
         if not passed:
             sys.exit(f"{output}\nfails without any fault: {shlex.join(words)}")
         if not any(int(count) for count in re.findall(r"^running (\d+) tests?$", output, re.MULTILINE)):
             sys.exit(f"{output}\nruns no test, so that it would miss all faults: {shlex.join(words)}")
-    missed = [fault["name"] for fault in chosen if not caught(fault["name"], *planted[fault["name"]], commands)]
+    missed = [fault["name"] for fault in chosen if not caught(fault["name"], *planted[fault["name"]], commands, arguments.patience)]
     print(f"{len(chosen) - len(missed)} of {len(chosen)} faults are caught")
     if missed:
         sys.exit(f"missed: {', '.join(missed)}")
@@ -119,7 +120,7 @@ def refresh() -> None:
             shutil.copyfile(source, target)
 
 
-def run(words, name: str = "the tree") -> tuple[bool, str]:
+def run(words, patience: int, name: str = "the tree") -> tuple[bool, str]:
     """Whether a test passes, and what it says."""
     environment = {"CARGO_TARGET_DIR": str(ROOT / "target"), **os.environ, "RUST_BACKTRACE": "0",
                    "HYPERPLAN_SHRINK_SECONDS": "0"}
@@ -129,20 +130,20 @@ def run(words, name: str = "the tree") -> tuple[bool, str]:
     if built.returncode != 0:
         sys.exit(f"{built.stdout}\n{name}: does not compile")
     try:
-        done = subprocess.run(words, timeout=PATIENCE, **options)
+        done = subprocess.run(words, timeout=patience, **options)
     except subprocess.TimeoutExpired:
-        return False, f"no end after {PATIENCE} s"
+        return False, f"no end after {patience} s"
     return done.returncode == 0, done.stdout
 
 
-def caught(name: str, path: pathlib.Path, line: int, text: str, commands: dict) -> bool:
+def caught(name: str, path: pathlib.Path, line: int, text: str, commands: dict, patience: int) -> bool:
     """Whether the test fails with the fault in place."""
     target = COPY / path.relative_to(ROOT)
     sound = target.read_text()
     start = time.monotonic()
     target.write_text(text)
     try:
-        passed, _ = run(commands[name], name)
+        passed, _ = run(commands[name], patience, name)
     finally:
         target.write_text(sound)
     print(f"{name}: {'MISSED' if passed else 'caught'}, {time.monotonic() - start:.0f} s", flush=True)
