@@ -264,3 +264,26 @@ fn external_solvers_agree() {
         }
     }
 }
+
+/// Plans that were proved for all outcomes of their actions rely on none.
+#[test]
+fn outcomes_are_mentioned_where_they_matter() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("lift.hp");
+    let system = "system Lift { state at: 0..3; action up, slip; on up { at' = at + 1; } \
+                  on slip { at' in {at, at + 1}; } init at == 0; absorb at == 3; }";
+    let sure = "F[0,6] at[p] == 3 & (G[0,6] action[p] == action[q] -> F[0,6] at[q] == 3)";
+    for (objective, relies) in [
+        (format!("exists p. forall q. {sure}"), false),
+        (format!("exists p. forall q. X action[p] == slip & {sure}"), false),
+        (format!("exists p. forall q. X (action[p] == slip & at[p] == 1) & {sure}"), true),
+        ("exists p. F[0,3] at[p] == 3 & G[1,3] action[p] == slip".to_owned(), true),
+        // Where the outcome is another one, the action that follows is not possible.
+        ("exists p. X action[p] == slip & X X (action[p] == up & at[p] >= 1)".to_owned(), false),
+    ] {
+        std::fs::write(&file, format!("{system}\nobjective o {{ {objective} }}\n")).expect("writable");
+        let run = hyperplan(&["solve", text(&file)]);
+        assert_eq!(run.status, 0, "{objective}: {run:?}");
+        assert_eq!(run.stderr.contains("p relies on outcomes"), relies, "{objective}: {run:?}");
+    }
+}
