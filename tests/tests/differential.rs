@@ -18,6 +18,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::str::FromStr;
 use std::time::{Duration, Instant};
 
+#[path = "differential/beliefs.rs"]
+mod beliefs;
 #[path = "differential/minimize.rs"]
 mod minimize;
 #[path = "differential/quick.rs"]
@@ -230,6 +232,13 @@ impl Way {
             Config { cross_check, quantifiers, states, limits, deadline, ..Config::new(solver.clone()) };
         solve(problem, objective, &config)
     }
+}
+
+/// The verdict of the embedded solver on an objective that must be decided.
+fn verdict(problem: &Problem, objective: &Objective, quantifiers: Quantifiers) -> Verdict {
+    let deadline = Deadline::after(Duration::from_secs(60));
+    let config = Config { quantifiers, deadline, ..Config::new(Spec::Builtin) };
+    solve(problem, objective, &config).expect("it is supported").verdict
 }
 
 enum Judged {
