@@ -8,6 +8,7 @@ use rustc_hash::FxHashSet;
 #[derive(Debug, Default)]
 pub(crate) struct Diagnostics {
     list: Vec<Diagnostic>,
+    errors: usize,
     seen: FxHashSet<(Option<Span>, &'static str, String)>,
     uses: Vec<(Span, String)>,
 }
@@ -26,7 +27,13 @@ impl Diagnostics {
                 diagnostic = diagnostic.with_related(*span, words.clone());
             }
         }
+        self.errors += usize::from(diagnostic.is_error());
         self.list.push(diagnostic);
+    }
+
+    /// Whether there are so many errors that nobody would read more: each takes a search for what was probably meant.
+    pub(crate) fn are_enough(&self) -> bool {
+        self.errors > MAX_ERRORS
     }
 
     /// Adds a message about something of which nothing comes.
@@ -54,7 +61,7 @@ impl Diagnostics {
 
     /// Whether there is an error among them.
     pub(crate) fn any_error(&self) -> bool {
-        self.list.iter().any(Diagnostic::is_error)
+        self.errors > 0
     }
 
     /// Everything, in the order found.
@@ -62,6 +69,9 @@ impl Diagnostics {
         self.list
     }
 }
+
+/// Expressions are not looked at after so many errors.
+const MAX_ERRORS: usize = 200;
 
 /// Completes a message about an unknown name by the one that was probably meant, or by those there are.
 pub(crate) fn suggest<'a>(

@@ -31,6 +31,14 @@ impl Limits {
     /// Starts a node; says `false`, once with a message, where a limit is reached. Pair with [`Limits::leave`]
     /// where it said `true`.
     pub(crate) fn enter(&mut self, span: Span, diagnostics: &mut Diagnostics) -> bool {
+        if diagnostics.are_enough() {
+            if !self.reported {
+                self.reported = true;
+                let message = "so many errors that what follows is not looked at";
+                diagnostics.push(Diagnostic::error("too-many-errors", span, message));
+            }
+            return false;
+        }
         if self.depth < MAX_DEPTH && self.nodes < MAX_NODES {
             self.depth += 1;
             self.nodes += 1;
