@@ -30,7 +30,8 @@ ARITHMETIC = {
 
 # What a feature of a logic is called, and the rule that it belongs to.
 NAMES = {
-    "functions": ("uninterpreted sorts or functions", "logic-functions"), "bits": ("bit-vectors", "logic-bit-vectors"),
+    "functions": ("uninterpreted sorts or functions", "logic-functions"),
+    "sorts": ("uninterpreted sorts or functions", "logic-functions"), "bits": ("bit-vectors", "logic-bit-vectors"),
     "datatypes": ("datatypes", "logic-datatypes"), "Int": ("integers", "logic-arithmetic"),
     "Real": ("reals", "logic-arithmetic"), "nonlinear": ("nonlinear arithmetic", "logic-arithmetic"),
     "arrays": ("arrays", "logic-others"), "strings": ("strings", "logic-others"),
@@ -44,6 +45,9 @@ def features(logic: str) -> set[str]:
     if match is None:
         return set()
     found = {name for name, text in match.groupdict().items() if text and name != "arithmetic"}
+    # Arrays alone are over free sorts.
+    if "functions" in found or match["arrays"] == "AX":
+        found.add("sorts")
     return found | ARITHMETIC[match["arithmetic"] or ""]
 
 
@@ -60,7 +64,9 @@ def needed(script: Script, logic: str) -> dict[str, int]:
     for command in script.commands:
         if command.name in ("declare-datatype", "declare-datatypes"):
             need.setdefault("datatypes", command.start)
-        elif command.name == "declare-sort" or command.name == "declare-fun" and command.tokens[4:5] != [b")"]:
+        elif command.name == "declare-sort":
+            need.setdefault("sorts", command.start)
+        elif command.name == "declare-fun" and command.tokens[4:5] != [b")"]:
             need.setdefault("functions", command.start)
     # Nothing but Booleans is QF_UF, or UF.
     return need or {"functions": 0}
@@ -89,4 +95,5 @@ def judged(script: Script, logic: str) -> list[tuple[int, str, str]]:
         for feature in sorted(has - min(less, key=lambda other: (len(other), sorted(other)))):
             name, rule = NAMES[feature]
             wrong.append((0, rule, f"no {name}, and the logic is {logic}"))
-    return wrong
+    # Sorts and functions are of one name.
+    return list({message: (place, rule, message) for place, rule, message in reversed(wrong)}.values())[::-1]

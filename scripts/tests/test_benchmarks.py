@@ -60,6 +60,13 @@ DATATYPES = [
     ("(and p |q 1|)", "(= p a)"), ("(or p r)", "r"),
 ]
 
+ARRAYS = [
+    ("QF_UF", "QF_AX"),
+    ("(declare-fun p () Bool)",
+     "(declare-sort I 0)\n(declare-sort E 0)\n(declare-fun m () (Array I E))\n(declare-fun i () I)\n(declare-fun p () E)"),
+    ("(and p |q 1|)", "(= (select m i) p)"), ("(or p r)", "r"),
+]
+
 # A name, what is changed, and the track where it is not the one that the text shows.
 GOOD_CASES = [
     ("plain", [], None),
@@ -80,6 +87,7 @@ GOOD_CASES = [
     ("functions", [("p () Bool", "p () Bool)\n(declare-fun f (Bool) Bool")], None),
     ("functions and bits", [*BITS, ("QF_BV", "QF_UFBV"), ("p () (_", "f (Bool) Bool)\n(declare-fun p () (_")], None),
     ("sorts", [("(declare-fun p", "(declare-sort S 0)\n(declare-fun p")], None),
+    ("arrays over free sorts", ARRAYS, None),
     ("text with a command's name", [("Exactly (one)", "(assert x) (push) (exists) exit")], None),
     ("quantifier in words, where there is one", [*QUANTIFIED, ("Exactly (one)", "(exists p)")], None),
     ("other languages", [("A. Robot", "Ř. Øbot")], None),
