@@ -35,12 +35,12 @@ fn one_file_for_each_objective_value_and_encoding() {
     let mut expected: Vec<String> = ["ar", "cso", "iso", "isr", "sp"].map(|o| format!("{o}.smt2")).to_vec();
     for time in ["5", "6"] {
         for states in ["onehot", "bitvec"] {
-            expected.extend(["keep", "expand"].map(|how| format!("sp-T={time}-{states}-{how}.smt2")));
+            expected.extend(["keep", "expand"].map(|how| format!("sp-T-{time}-{states}-{how}.smt2")));
         }
     }
     expected.sort();
     assert_eq!(names, expected);
-    let one = std::fs::read_to_string(folder.path().join("sp-T=5-bitvec-keep.smt2")).expect("written");
+    let one = std::fs::read_to_string(folder.path().join("sp-T-5-bitvec-keep.smt2")).expect("written");
     assert!(one.contains("Constants: T = 5.") && one.contains("(set-logic BV)"), "{one}");
 }
 

@@ -124,7 +124,8 @@ impl Name<'_> {
     fn of(&self, config: &EmitConfig) -> String {
         let mut name = self.objective.to_owned();
         if let Some((constant, value)) = self.setting {
-            name += &format!("-{constant}={value}");
+            // Without `=`: z3 takes such names for settings.
+            name += &format!("-{constant}-{value}");
         }
         if self.args.states.len() > 1 {
             name += &format!("-{}", config::states_name(config.states));
