@@ -39,7 +39,8 @@ impl Folders {
         Ok(folders)
     }
 
-    /// A copy of a query that says nothing of its status, and sets the seed; `None` where the file can serve itself.
+    /// A copy of a query that says nothing of its status, sets the seed, and has a name that no solver takes for an option;
+    /// `None` where the file can serve itself.
     pub(crate) fn copy(&self, run: &Run) -> io::Result<Option<String>> {
         let file = Path::new(&run.instance.file);
         // What cannot be read is told of by the run.
@@ -47,10 +48,13 @@ impl Folders {
         let standalone = run.solver.standalone.as_ref().filter(|_| run.seed != 0);
         let seed = standalone.and_then(|standalone| standalone.seed(run.seed));
         let without = Query::without_status(&bytes);
-        if seed.is_none() && without.is_none() {
+        // By some versions of z3 whatever has a `=` is.
+        let strange = run.instance.file.starts_with('-') || run.instance.file.contains('=');
+        if seed.is_none() && without.is_none() && !strange {
             return Ok(None);
         }
-        let copy = Path::new(&self.full(&self.temporary)).join(file.file_name().unwrap_or_default());
+        let name = file.file_name().filter(|_| !strange).unwrap_or("query.smt2".as_ref());
+        let copy = Path::new(&self.full(&self.temporary)).join(name);
         let text = [seed.unwrap_or_default().into_bytes(), without.unwrap_or(bytes)].concat();
         fs::write(&copy, text)?;
         Ok(Some(copy.display().to_string()))

@@ -7,6 +7,7 @@
 pub mod benchexec;
 pub mod contest;
 mod folders;
+mod heard;
 mod html;
 mod judge;
 pub mod latex;
@@ -30,7 +31,7 @@ mod witness;
 pub use judge::{Claim, Fault, Finding, Judgement, Kind, judge};
 pub use log::{Log, LogError, Past};
 pub use pool::{Event, Setting, prepare, run_all};
-pub use query::{Query, Request};
+pub use query::Query;
 pub use record::{Answer, Limit, Record, Status, checked};
 pub use supervise::supervise;
 

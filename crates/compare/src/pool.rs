@@ -15,6 +15,7 @@ use hyperplan_problem::answer::ReasonCode;
 use rustix::process::{Pid, Signal, kill_process, kill_process_group};
 
 use crate::folders::{self, Folders};
+use crate::heard::Heard;
 use crate::plan::{Kind, Run};
 use crate::query::Query;
 use crate::reading::{self, Reading};
@@ -309,8 +310,9 @@ fn record(run: &Run, setting: &Setting, measured: &Measured, folders: &Folders) 
     };
     let reading: Reading = match &instance.kind {
         Kind::Query(query) => {
-            let reading = reading::of_query(measured, query, over.is_some()).sized(query);
-            witness::checked(reading, query, &instance.file, measured)
+            let heard = Heard::new(query, &measured.stdout);
+            let reading = reading::of_query(measured, query, &heard, over.is_some()).sized(query);
+            witness::checked(reading, query, &heard, &instance.file, measured)
         }
         Kind::Problem { .. } => {
             let said = reading::of_problem(measured, over.is_some());

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use hyperplan_smt::{Token, tokens};
+use hyperplan_smt::{Request, Token, tokens};
 
 use crate::record::Answer;
 
@@ -13,8 +13,8 @@ pub struct Query {
     pub logic: Option<String>,
     /// Its checks in order, each with the `:status` said before it.
     pub checks: Vec<Option<Answer>>,
-    /// What it asks for of a model, after a check.
-    pub request: Request,
+    /// Its commands that have an answer, in order.
+    pub requests: Vec<Request>,
     /// Whether it takes a solver that can be asked again: assertions are taken back, or there are several checks.
     pub incremental: bool,
     /// Symbols that it declares.
@@ -25,25 +25,18 @@ pub struct Query {
     pub bytes: u64,
 }
 
-/// What a file asks for of a model.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Request {
-    /// Nothing.
-    #[default]
-    Nothing,
-    /// The values of some terms.
-    Values,
-    /// All of it.
-    Model,
-}
-
 impl Query {
     /// Reads the text of a file. Text that is no SMT-LIB has no checks.
     #[must_use]
     pub fn scan(text: &str) -> Query {
         let mut query = Query { bytes: text.len() as u64, ..Query::default() };
-        let mut status = None;
-        commands(text, |_, words| query.command(words, &mut status));
+        let (mut status, mut ended) = (None, false);
+        commands(text, |_, words| {
+            ended |= words == ["exit"];
+            if !ended {
+                query.command(words, &mut status);
+            }
+        });
         query.incremental |= query.checks.len() > 1;
         query
     }
@@ -77,17 +70,21 @@ impl Query {
             ["declare-fun" | "declare-const", ..] => self.variables += 1,
             ["assert", ..] => self.assertions += 1,
             ["push" | "pop" | "reset" | "reset-assertions", ..] => self.incremental = true,
-            ["get-model", ..] if !self.checks.is_empty() => self.request = Request::Model,
-            ["get-value", ..] if !self.checks.is_empty() && self.request == Request::Nothing => {
-                self.request = Request::Values;
-            }
-            ["check-sat", ..] => self.checks.push(status.take()),
-            ["check-sat-assuming", ..] => {
-                self.incremental = true;
-                self.checks.push(status.take());
-            }
             _ => {}
         }
+        let Some(request) = Request::of(words) else { return };
+        if request == Request::Check {
+            self.incremental |= words[0] != "check-sat";
+            self.checks.push(status.take());
+        }
+        self.requests.push(request);
+    }
+
+    /// What it asks for of a model after its first check: all of it, or the values of some terms.
+    pub(crate) fn of_model(&self) -> Option<&Request> {
+        let check = self.requests.iter().position(|request| *request == Request::Check)?;
+        let asked = |wanted: Request| self.requests[check..].iter().find(|request| **request == wanted);
+        asked(Request::Model).or_else(|| asked(Request::Values))
     }
 }
 
@@ -129,7 +126,7 @@ mod tests {
         let expected = Query {
             logic: Some("QF_LIA".to_owned()),
             checks: vec![Some(Answer::Unsat)],
-            request: Request::Nothing,
+            requests: vec![Request::Check],
             incremental: false,
             variables: 2,
             assertions: 2,
@@ -148,10 +145,20 @@ mod tests {
 
     #[test]
     fn a_model_is_asked_for_after_a_check() {
-        let request = |text: &str| Query::scan(text).request;
-        assert_eq!(request("(get-model)(check-sat)(get-info :name)"), Request::Nothing);
-        assert_eq!(request("(check-sat)(get-value (x))"), Request::Values);
-        assert_eq!(request("(check-sat)(get-model)(get-value (x))(exit)"), Request::Model);
+        let request = |text: &str| Query::scan(text).of_model().cloned();
+        assert_eq!(request("(get-model)(check-sat)(get-info :name)"), None);
+        assert_eq!(request("(check-sat)(get-value (x))"), Some(Request::Values));
+        assert_eq!(request("(check-sat)(get-value (x))(get-model)(exit)"), Some(Request::Model));
+        assert_eq!(request("(check-sat)(exit)(get-model)"), None);
+    }
+
+    #[test]
+    fn commands_that_have_an_answer() {
+        let text = "(echo \"(check-sat)\"\"\")(set-logic ALL)(get-info :name)(check-sat)(exit)(check-sat)";
+        let query = Query::scan(text);
+        let echo = Request::Echo("(check-sat)\"\"".to_owned());
+        assert_eq!(query.requests, [echo, Request::Info, Request::Check]);
+        assert_eq!((query.checks.len(), query.incremental), (1, false));
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use hyperplan_problem::answer::{self, Failed, ReasonCode, Verdict};
 use serde::de::DeserializeOwned;
 
+use crate::heard::Heard;
 use crate::query::Query;
 use crate::record::{Answer, Status};
 use crate::supervise::{Exceeded, Measured};
@@ -103,14 +104,13 @@ fn first_line<T: DeserializeOwned>(measured: &Measured) -> Option<T> {
     measured.stdout.lines().find_map(|line| serde_json::from_str(line).ok())
 }
 
-/// What a solver said to a query. What it complains of after its answer, such as a model that it cannot give, does not
-/// count; before it, the answer is to something else than was asked. Of several checks only an answer that contradicts
-/// what is known counts: one status cannot stand for all of them.
-pub(crate) fn of_query(measured: &Measured, query: &Query, over: bool) -> Reading {
-    let answers: Vec<Status> = measured.stdout.lines().filter_map(answer).collect();
-    let error = early_error(&measured.stdout, query.checks.len());
+/// What a solver said to a query. An error before its answer means that the answer is to something else than was asked;
+/// one after it is told where it is about the model. Of several checks only an answer that contradicts what is known
+/// counts: one status cannot stand for all of them.
+pub(crate) fn of_query(measured: &Measured, query: &Query, heard: &Heard, over: bool) -> Reading {
+    let Heard { answers, early, .. } = heard;
     if query.checks.len() > 1 {
-        return of_several(&answers, query, error.is_some());
+        return of_several(answers, query, early.is_some());
     }
     let expected = query.checks.first().copied().flatten();
     let trouble = |status, message: Option<String>| {
@@ -120,9 +120,8 @@ pub(crate) fn of_query(measured: &Measured, query: &Query, over: bool) -> Readin
     if let Some(status) = limits(measured, over) {
         return Reading { expected, ..Reading::new(status, None) };
     }
-    let all = format!("{}\n{}", error.unwrap_or_default(), measured.stderr).to_lowercase();
-    let said = answers.first().copied().filter(|_| !query.checks.is_empty() && error.is_none());
-    let Some(status) = said else {
+    let all = format!("{}\n{}", early.as_deref().unwrap_or_default(), measured.stderr).to_lowercase();
+    let Some(&status) = answers.first().filter(|_| early.is_none()) else {
         let status = match () {
             () if answers.contains(&Status::Timeout) => Status::Timeout,
             () if ["out of memory", "bad_alloc", "memory exhausted"].iter().any(|w| all.contains(w)) => {
@@ -131,26 +130,18 @@ pub(crate) fn of_query(measured: &Measured, query: &Query, over: bool) -> Readin
             () if ["unsupported", "not supported"].iter().any(|w| all.contains(w)) => Status::Unsupported,
             () => Status::Error,
         };
-        return trouble(status, error.map(str::to_owned));
+        return trouble(status, early.clone());
     };
     if measured.signal.is_some() {
         return trouble(Status::Error, None);
     }
-    if answers.iter().any(|answer| *answer != status) {
+    if heard.contradicts {
         return trouble(Status::Error, Some("it gave several answers to one check".to_owned()));
     }
-    Reading { expected, ..Reading::new(status, None) }
-}
-
-/// The first error before as many answers as there are checks.
-fn early_error(stdout: &str, checks: usize) -> Option<&str> {
-    let mut answers = 0;
-    let before = stdout.lines().take_while(|line| {
-        let early = answers < checks.max(1);
-        answers += usize::from(answer(line).is_some());
-        early
-    });
-    before.map(str::trim).find(|line| line.starts_with("(error"))
+    let late = heard.late.as_ref().filter(|_| status == Status::Sat);
+    let message =
+        late.map(|error| shortened(format!("after its answer the solver reported an error: {error}")));
+    Reading { expected, ..Reading::new(status, message) }
 }
 
 /// Several checks in one file are not supported, but what contradicts a known status is told of.
@@ -171,17 +162,6 @@ fn of_several(answers: &[Status], query: &Query, failed: bool) -> Reading {
 
 fn contradicts(said: Status, known: Answer) -> bool {
     matches!((said, known), (Status::Sat, Answer::Unsat) | (Status::Unsat, Answer::Sat))
-}
-
-/// The answer that a line is.
-fn answer(line: &str) -> Option<Status> {
-    match line.trim() {
-        "sat" => Some(Status::Sat),
-        "unsat" => Some(Status::Unsat),
-        "unknown" => Some(Status::Unknown),
-        "timeout" => Some(Status::Timeout),
-        _ => None,
-    }
 }
 
 /// Whether a limit decided; what was said after the time was over does not count.

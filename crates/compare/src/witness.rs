@@ -2,10 +2,11 @@
 
 use std::fs;
 
-use hyperplan_smt::{Benchmark, Model, ReadError, check_partial_model, read_script, symbol_text};
+use hyperplan_smt::{Benchmark, Model, ReadError, Request, check_partial_model, read_script, symbol_text};
 use hyperplan_solver::{PrintedModel, PrintedModelError};
 
-use crate::query::{Query, Request};
+use crate::heard::Heard;
+use crate::query::Query;
 use crate::reading::Reading;
 use crate::record::Status;
 use crate::supervise::Measured;
@@ -22,11 +23,16 @@ enum Worth {
 }
 
 /// The reading of a query, with what its model is worth where one was asked for.
-pub(crate) fn checked(reading: Reading, query: &Query, file: &str, measured: &Measured) -> Reading {
-    if reading.status != Status::Sat || query.checks.len() != 1 || query.request == Request::Nothing {
-        return reading;
-    }
-    let (verified, message) = match worth(query.request, file, measured) {
+pub(crate) fn checked(
+    reading: Reading,
+    query: &Query,
+    heard: &Heard,
+    file: &str,
+    measured: &Measured,
+) -> Reading {
+    let request = query.of_model().filter(|_| reading.status == Status::Sat && query.checks.len() == 1);
+    let Some(request) = request else { return reading };
+    let (verified, message) = match worth(request, query, heard, file, measured) {
         Worth::Holds => (Some("model"), None),
         Worth::Fails(why) => (Some("refuted"), Some(format!("wrong model: {why}"))),
         Worth::Unchecked(why) => (None, Some(format!("model not checked: {why}"))),
@@ -34,13 +40,19 @@ pub(crate) fn checked(reading: Reading, query: &Query, file: &str, measured: &Me
     Reading { verified: verified.map(str::to_owned), message: message.or(reading.message), ..reading }
 }
 
-fn worth(request: Request, file: &str, measured: &Measured) -> Worth {
+fn worth(request: &Request, query: &Query, heard: &Heard, file: &str, measured: &Measured) -> Worth {
     if measured.is_cut() {
         return Worth::Unchecked("it is too long".to_owned());
     }
+    // Whatever it printed besides, it does not stand by it.
+    if let Some(error) = &heard.late {
+        return Worth::Unchecked(format!("the solver reported an error: {error}"));
+    }
     // Before the file is: it may be long.
-    let printed = match PrintedModel::read(&measured.stdout) {
+    let printed = match PrintedModel::read(&heard.model) {
         Ok(printed) => printed,
+        // Of no symbols there is nothing to print.
+        Err(PrintedModelError::Empty) if query.variables == 0 => PrintedModel::default(),
         Err(PrintedModelError::Empty) => return Worth::Unchecked("none was printed".to_owned()),
         Err(error) => return Worth::Unchecked(error.to_string()),
     };
@@ -54,7 +66,7 @@ fn worth(request: Request, file: &str, measured: &Measured) -> Worth {
 }
 
 /// What a printed model of a text is.
-fn of_model(request: Request, text: &str, printed: &PrintedModel) -> Worth {
+fn of_model(request: &Request, text: &str, printed: &PrintedModel) -> Worth {
     let benchmark = match read_script(text) {
         Ok(benchmark) => benchmark,
         Err(ReadError::Syntax { what, line, .. } | ReadError::Unsupported { what, line, .. }) => {
@@ -69,7 +81,7 @@ fn of_model(request: Request, text: &str, printed: &PrintedModel) -> Worth {
     }
     match gap {
         // A model that was asked for as a whole has to define all symbols, whether or not they matter.
-        Some(gap) if check.unknown > 0 || request == Request::Model => Worth::Unchecked(gap),
+        Some(gap) if check.unknown > 0 || *request == Request::Model => Worth::Unchecked(gap),
         _ if check.unknown > 0 => {
             let (unknown, all) = (check.unknown, benchmark.assertions);
             let script = &benchmark.script;
@@ -102,7 +114,7 @@ mod tests {
     const TEXT: &str = "(declare-const x Int)(declare-const |y z| Bool)(declare-const unused Bool)\n\
                         (assert true)\n(assert (or |y z| (< x 3)))\n(assert (not (= x 2)))\n(check-sat)";
 
-    fn of(request: Request, text: &str, output: &str) -> Worth {
+    fn of(request: &Request, text: &str, output: &str) -> Worth {
         let stdout = format!("sat\n{output}");
         match PrintedModel::read(&stdout) {
             Ok(printed) => of_model(request, text, &printed),
@@ -117,7 +129,7 @@ mod tests {
                 "((define-fun x () Int {x}) (define-fun |y z| () Bool {y}) (define-fun unused () Bool true))"
             )
         };
-        let of = |output: &str| of(Request::Model, TEXT, output);
+        let of = |output: &str| of(&Request::Model, TEXT, output);
         assert_eq!(of(&define("(- 1)", "false")), Worth::Holds);
         assert_eq!(of(&define("5", "true")), Worth::Holds);
         let fails = |text: &str| Worth::Fails(text.to_owned());
@@ -133,7 +145,7 @@ mod tests {
 
     #[test]
     fn models_in_part() {
-        let of = |output: &str| of(Request::Values, TEXT, output);
+        let of = |output: &str| of(&Request::Values, TEXT, output);
         assert_eq!(of("((x 1))"), Worth::Holds);
         assert_eq!(of("((|y z| true) (x 3))"), Worth::Holds);
         assert_eq!(of("((|y z| true))"), Worth::Unchecked("no value for x".to_owned()));
@@ -142,7 +154,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_evaluated() {
-        let of = |text: &str| of(Request::Model, text, "()");
+        let of = |text: &str| of(&Request::Model, text, "()");
         let unchecked = |text: &str| Worth::Unchecked(text.to_owned());
         assert_eq!(of("(push 1)(check-sat)"), unchecked("push on line 1"));
         assert_eq!(of("(assert\n(and))"), unchecked("arguments are missing on line 2"));
@@ -159,8 +171,9 @@ mod tests {
         let mut stdout = "sat\n((x 2))".to_owned();
         let of = |stdout: String| {
             let reading = Reading::new(Status::Sat, None);
-            let query = Query { checks: vec![None], request: Request::Values, ..Query::default() };
-            checked(reading, &query, "no-such-file", &Measured { stdout, ..Measured::default() })
+            let query = Query::scan("(check-sat)(get-value (x))");
+            let heard = Heard::new(&query, &stdout);
+            checked(reading, &query, &heard, "no-such-file", &Measured { stdout, ..Measured::default() })
         };
         let missing = of(stdout.clone());
         assert!(missing.message.is_some_and(|message| message.contains("no-such-file: ")));

@@ -83,6 +83,12 @@ impl<'a> Encoder<'a> {
         Ok(Encoder { problem, objective, states, task, graphs, writer })
     }
 
+    /// Whether every path has finitely many states to be in.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.objective.paths.keys().all(|path| self.task.system(path).is_finite())
+    }
+
     /// Whether a path's system has a path that is long enough (for ever, in bounded mode); `None` where its states
     /// were not enumerated.
     #[must_use]

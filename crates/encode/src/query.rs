@@ -11,7 +11,8 @@ use std::sync::Arc;
 
 /// One script under construction.
 pub struct Query<'e, 'a> {
-    encoder: &'e Encoder<'a>,
+    /// What it is about.
+    pub encoder: &'e Encoder<'a>,
     /// What has been asserted so far, and the terms.
     pub script: Script,
     /// The paths in it.

@@ -9,7 +9,7 @@ use derive_more::{From, Into};
 use hyperplan_problem::{ActionId, Expr, FormulaId, Leaf, PathId, PathLeaf, State, Trace};
 use hyperplan_relevance::Error;
 use hyperplan_relevance::{Belief, Goal, Instance, Known, Narrowing, Relevant};
-use hyperplan_smt::{Model, Script, Term, Terms};
+use hyperplan_smt::{Features, Model, Script, Term, Terms};
 use std::sync::Arc;
 use typed_index_collections::TiVec;
 
@@ -88,6 +88,11 @@ pub trait Writer: Send + Sync {
 
     /// Whether a path took an action that could have had another outcome.
     fn picks_outcomes(&self, path: PathId, known: &Known) -> bool;
+
+    /// What terms about any of its paths may need, where that depends on the path; by default, nothing does.
+    fn features(&self) -> Features {
+        Features::default()
+    }
 
     /// For a system that was not enumerated, in bounded mode: a script that is unsatisfiable only if no state is a
     /// dead end.

@@ -4,7 +4,7 @@ use crate::failure::{Exit, Failure};
 use crate::files::reason;
 use hyperplan_plan::{EncodeError, Error, Evidence, Fallen, Fault, Note, Reason, Unsupported, Wrong};
 use hyperplan_problem::answer::ReasonCode;
-use hyperplan_solver::{Error as SolverError, keep_query};
+use hyperplan_solver::{Error as SolverError, Unknown, keep_query};
 use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -146,10 +146,13 @@ fn advice(error: &EncodeError) -> &'static str {
     }
 }
 
-/// The flag with which an undecided objective may be decided.
+/// The flag, or the line of configuration, with which an undecided objective may be decided.
 fn way_out(reason: &Reason) -> &'static str {
     match reason {
         Reason::LargeNumbers => "; --quantifiers keep leaves the search to the solver",
+        Reason::Solver(Unknown::WaitsForEnd) => {
+            "; describe it in hyperplan.toml, with `incremental = false` (docs/solvers.md)"
+        }
         Reason::Unverified(reason) => way_out(reason),
         _ => "",
     }

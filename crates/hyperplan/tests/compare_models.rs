@@ -126,3 +126,83 @@ fn models_of_solvers() {
         }
     }
 }
+
+/// The only run of a solver that prints this for a query.
+fn record(query: &str, printed: &str) -> Value {
+    let comparison = Comparison::new();
+    let files = comparison.queries(0);
+    fs::write(files.join("a.smt2"), query).expect("ours");
+    let fake = Fake::new(&format!("cat > /dev/null; cat <<'END'\n{printed}\nEND"));
+    let run = comparison.run(&[text(&files), &format!("--solver='{}'", fake.program().display())]);
+    assert_eq!(run.status, 0, "{}{}", run.stdout, run.stderr);
+    comparison.records().pop().expect("it was run")
+}
+
+#[test]
+fn the_answer_is_what_the_check_was_answered() {
+    let query = format!("(set-info :status sat)\n(echo \"unsat\")\n{QUERY}(echo \"unsat\")\n");
+    let model = model("1", "true");
+    for printed in [
+        format!("unsat\nsat\n{model}\nunsat"),
+        format!("\"unsat\"\nsat\n{model}\n\"unsat\""),
+        // One that does not echo.
+        format!("sat\n{model}"),
+    ] {
+        let record = record(&query, &printed);
+        assert_eq!((&record["status"], &record["verified"]), (&"sat".into(), &"model".into()), "{record}");
+    }
+    // It refused the query, and is not blamed for what it echoed or quoted.
+    for printed in ["unsat\n(error \"no such sort\")", "unsat\n(error \"line 2:\nunsat\n\")\nunsat"] {
+        let record = record(&query, printed);
+        assert_eq!(record["status"], "error", "{record}");
+        assert!(record["message"].as_str().is_some_and(|said| said.starts_with("(error ")), "{record}");
+    }
+}
+
+#[test]
+fn what_is_printed_besides_a_model() {
+    let asked = "(declare-fun f (Int) Int)\n(assert (! (> (f 1) 3) :named big))\n(check-sat)\n(get-model)\n";
+    let function = record(asked, "sat\n(\n (define-fun f ((x!0 Int)) Int\n 4))");
+    assert_eq!(function["message"], "model not checked: declare-fun with arguments on line 1", "{function}");
+    let named = format!(
+        "{}(get-assignment)\n",
+        QUERY.replace("(assert (not (= x 2)))", "(assert (! (not (= x 2)) :named n))")
+    );
+    for printed in [
+        "sat\n(\n (define-fun x () Int 1)\n (define-fun p () Bool true)\n (define-fun n () Bool\n (not (= x 2))))\n((n true))",
+        "sat\n(= x 1)\n(= p true)\n((n true))",
+    ] {
+        let record = record(&named, printed);
+        assert_eq!((&record["verified"], &record["message"]), (&"model".into(), &Value::Null), "{record}");
+    }
+    // Whatever was printed, the solver does not stand by it.
+    let disowned = record(QUERY, &format!("sat\n(error \"an invalid model\")\n{}", model("2", "true")));
+    let expected = "model not checked: the solver reported an error: an invalid model";
+    assert_eq!((&disowned["verified"], &disowned["message"]), (&Value::Null, &expected.into()), "{disowned}");
+    let told = record(&QUERY.replace("(get-model)", ""), "sat\n(error \"an invalid model\")");
+    let expected = "after its answer the solver reported an error: an invalid model";
+    assert_eq!((&told["status"], &told["message"]), (&"sat".into(), &expected.into()), "{told}");
+    // Of no symbols nothing may be printed.
+    let empty = record("(assert true)\n(check-sat)\n(get-model)\n", "sat\n");
+    assert_eq!(empty["verified"], "model", "{empty}");
+}
+
+#[test]
+fn files_whose_names_look_like_options() {
+    for solver in ["z3", "cvc5", "yices"] {
+        if !solver_is_there(solver) {
+            continue;
+        }
+        let comparison = Comparison::new();
+        let files = comparison.queries(0).join("a=b");
+        fs::create_dir(&files).expect("ours");
+        for name in ["T=5.smt2", "plain.smt2"] {
+            let query = QUERY.replacen('\n', "\n(set-logic QF_LIA)\n", 1);
+            fs::write(files.join(name), query).expect("ours");
+        }
+        let run = comparison.run(&[text(&files), "--solver", solver]);
+        assert_eq!(run.status, 0, "{}{}", run.stdout, run.stderr);
+        let verified = comparison.records().into_iter().filter(|record| record["verified"] == "model");
+        assert_eq!(verified.count(), 2, "{}", comparison.log());
+    }
+}

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{command, hyperplan, text};
+use common::{command, hyperplan, solver_is_there, text};
 
 const DATE: [&str; 2] = ["--date", "2026-01-31"];
 
@@ -160,5 +160,41 @@ fn a_printed_model_becomes_a_strategy() {
         let run = hyperplan(&arguments);
         assert_eq!((run.status, run.stdout.as_str()), (2, ""), "{model}");
         assert!(run.stderr.contains(message), "{}", run.stderr);
+    }
+}
+
+/// Numbers that no strategy can have.
+#[test]
+fn a_model_with_large_numbers_is_undecided() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (problem, model) = (folder.path().join("triple.hp"), folder.path().join("model"));
+    let system = "system S { state x: int; action triple; on triple { x' = 3 * x; } init x == 1; }";
+    std::fs::write(&problem, format!("{system}\nobjective o {{ exists p. F[90,90] x[p] > 5 }}\n"))
+        .expect("ours");
+    let mut values: Vec<String> = Vec::new();
+    // Powers of three, digit by digit.
+    let mut digits = vec![1_u8];
+    for time in 0..=90 {
+        let number: String = digits.iter().rev().map(|digit| char::from(b'0' + digit)).collect();
+        values.push(format!("(p.x@{time} {number})"));
+        let mut carry = 0;
+        for digit in &mut digits {
+            let tripled = 3 * *digit + carry;
+            (*digit, carry) = (tripled % 10, tripled / 10);
+        }
+        digits.extend((carry > 0).then_some(carry));
+    }
+    std::fs::write(&model, format!("sat\n({})\n", values.join(" "))).expect("ours");
+    let run = hyperplan(&["verify", text(&problem), "--model", text(&model)]);
+    assert_eq!(run.status, 3, "{}", run.stderr);
+    assert!(run.stderr.contains("its numbers are beyond 64 bits"), "{}", run.stderr);
+    for solver in ["z3", "cvc5", "yices"].into_iter().filter(|solver| solver_is_there(solver)) {
+        let run = hyperplan(&["solve", text(&problem), "--solver", solver, "--format", "json"]);
+        assert_eq!(
+            (run.status, &run.json()[0]["reason_code"]),
+            (3, &"large-numbers".into()),
+            "{}",
+            run.stderr
+        );
     }
 }

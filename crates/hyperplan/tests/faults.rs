@@ -87,6 +87,30 @@ fn answers_before_it_was_asked() {
     expect("printf 'sat\\nunsat\\n'; exec cat > /dev/null", 4, &[words]);
 }
 
+/// Whatever comes first: its replies have one order.
+#[test]
+fn early_answers_are_treated_alike_in_every_run() {
+    let (early, twice) = (
+        Fake::new("echo unsat; exec cat > /dev/null"),
+        Fake::new("echo sat; echo unsat; exec cat > /dev/null"),
+    );
+    for _ in 0..10 {
+        assert_eq!(with(&early, &["--quiet"]).0, 1);
+        let (status, said) = with(&twice, &[]);
+        assert!(
+            status == 4 && said.contains("answered before it was asked; it said: unsat"),
+            "{status} {said}"
+        );
+    }
+}
+
+#[test]
+fn answers_at_the_end_of_the_input() {
+    let words = "sp: unknown: timeout: the solver answers only at the end of its input; describe it in hyperplan.toml, with \
+                 `incremental = false`";
+    expect("cat > /dev/null; echo unsat", 3, &[words]);
+}
+
 #[test]
 fn garbage() {
     expect(

@@ -250,6 +250,50 @@ echo unsat; echo '(error \"no model\")'; exit 1";
 }
 
 #[test]
+fn a_solver_that_answers_at_the_end_of_its_input() {
+    let (project, user) = folders();
+    let fake = Fake::new(
+        "cat > \"$TMPDIR/query\"; grep -q '^(check-sat)' \"$TMPDIR/query\" && echo unsat; rm \"$TMPDIR/query\"",
+    );
+    fs::write(project.path().join("hyperplan.toml"), entry("batch", &fake) + "incremental = false\n")
+        .expect("ours");
+    for quantifiers in ["cegis", "expand", "keep"] {
+        let run = solve_in(project.path(), user.path(), &["--solver", "batch", "--quantifiers", quantifiers]);
+        assert_eq!(run.status, 1, "{}", run.stderr);
+    }
+}
+
+#[test]
+fn a_path_gets_what_the_name_gets() {
+    let (project, user) = folders();
+    // As z3 it gets a file, a seed and a question for its version.
+    let body = "case $1 in -*) exit 3;; esac
+grep -q '^(set-option :random-seed 5)' \"$1\" || exit 4
+echo unsat; echo '(:version \"9.8.7\")'";
+    for name in ["z3", "z3-9.8.7-linux", "Z3.exe"] {
+        let fake = Fake::called(name, body);
+        let options = ["--seed", "5", "--quantifiers", "expand", "--solver"];
+        let program = format!("'{}'", fake.program().display());
+        let run = solve_in(project.path(), user.path(), &[&options[..], &[&program]].concat());
+        assert_eq!(run.status, 1, "{}", run.stderr);
+        assert_eq!(run.json()[0]["solver"], serde_json::json!({"name": "z3", "version": "9.8.7"}));
+        let run = solve_in(project.path(), user.path(), &["--solver", &program, "--states", "int"]);
+        assert_ne!(run.status, 2, "{}", run.stderr);
+    }
+    // What is said of z3 in the configuration is said of it there too.
+    let fake = Fake::called("z3", "echo unsat");
+    fs::write(
+        project.path().join("hyperplan.toml"),
+        "[[solver]]\nname = \"z3\"\ntheories = [\"bit-vectors\"]\n",
+    )
+    .expect("ours");
+    let program = format!("'{}'", fake.program().display());
+    let run = solve_in(project.path(), user.path(), &["--solver", &program, "--states", "int"]);
+    assert_eq!(run.status, 2, "{}", run.stderr);
+    assert!(run.stderr.contains("the z3 solver has no integers"), "{}", run.stderr);
+}
+
+#[test]
 fn all_questions_are_in_the_file() {
     let (project, user) = folders();
     // Values are no use where the answer is not known, and there are as many replies as questions.

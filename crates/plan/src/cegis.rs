@@ -14,7 +14,6 @@
 
 use crate::fact::Reason;
 use crate::oracle::{Dialogue, Oracle, Stop};
-use crate::prepare::is_finite;
 use hyperplan_encode::{Copies, Encoder, Env, Goal, Instance, Known, Narrowing, Query, Relevant};
 use hyperplan_problem::PathId;
 use hyperplan_smt::{Model, Term};
@@ -165,8 +164,11 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
         goal: &Goal,
         incremental: bool,
     ) -> Result<Round<'s, 'a>, Stop> {
-        let dialogue = self.oracle.open(1, incremental)?;
         let encoder = self.encoder;
+        let dialogue = match incremental {
+            true => self.oracle.open_growing(encoder.writer.features())?,
+            false => self.oracle.open(1)?,
+        };
         let relevant = match level {
             0 => encoder.writer.relevant(&self.blocks[level], goal, self.narrowing)?,
             _ => Relevant::default(),
@@ -190,13 +192,9 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
         Ok(round)
     }
 
-    /// A model that satisfies its query describes paths. Where variables have no bounds, its numbers may be too large
-    /// for ours: instance by instance they can grow without end.
+    /// A model that describes no path: instance by instance, numbers without bounds can grow without end.
     fn no_path(&self, round: &Round<'_, 'a>) -> Stop {
-        if !is_finite(self.encoder.problem, self.encoder.objective) {
-            return Stop::Unknown(Reason::LargeNumbers);
-        }
-        self.oracle.no_path(&round.dialogue).into()
+        self.oracle.no_path(&round.dialogue, self.encoder)
     }
 
     /// The paths of a game under a model; `None` where one of its instances describes no path.

@@ -5,7 +5,7 @@ use crate::config::{Config, Quantifiers};
 use crate::direct::{self, Direct};
 use crate::fact::{Because, Error, Fault, Reason, Unsupported};
 use crate::oracle::{Oracle, Stop};
-use crate::prepare::{is_existential, is_finite};
+use crate::prepare::is_existential;
 use hyperplan_encode::{Belief, Encoder, Goal, Narrowing};
 use hyperplan_problem::PathId;
 use hyperplan_solver::Spec;
@@ -86,6 +86,12 @@ impl<'s, 'a> Search<'s, 'a> {
 
     fn end(self, found: Result<Option<Assignment>, Stop>) -> Decision {
         let Search { quantifiers, because, rounds, .. } = self;
+        // No search by instances is to blame.
+        let one_query = self.blocks.len() == 1 || quantifiers == Quantifiers::Keep;
+        let found = match found {
+            Err(Stop::Unknown(Reason::LargeNumbers)) if one_query => Err(Stop::Unknown(Reason::LargeModel)),
+            found => found,
+        };
         Decision { quantifiers, because, rounds, found }
     }
 
@@ -212,7 +218,7 @@ impl<'s, 'a> Search<'s, 'a> {
         if auto {
             self.quantifiers = Quantifiers::Cegis;
         }
-        let patient = !auto || is_finite(self.encoder.problem, self.encoder.objective);
+        let patient = !auto || self.encoder.is_finite();
         let objective = self.encoder.objective;
         let goal = Goal::new(&objective.formula, self.want);
         let mut cegis = Cegis::new(self.encoder, oracle, &self.blocks);

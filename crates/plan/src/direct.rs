@@ -185,7 +185,7 @@ impl Direct<'_, '_> {
         oracle: &mut Oracle<'_>,
         blocks: usize,
     ) -> Result<Option<Vec<Option<Known>>>, Stop> {
-        let mut dialogue = oracle.open(blocks, false)?;
+        let mut dialogue = oracle.open(blocks)?;
         let script = &self.query.script;
         if !oracle.check(&mut dialogue, script)? {
             return Ok(None);
@@ -197,7 +197,7 @@ impl Direct<'_, '_> {
         for (at, path) in self.env.iter().enumerate() {
             if let Some(path) = *path {
                 let decoded = self.query.paths.decode(path, &model);
-                known[at] = Some(decoded.ok_or_else(|| oracle.no_path(&dialogue))?);
+                known[at] = Some(decoded.ok_or_else(|| oracle.no_path(&dialogue, self.query.encoder))?);
             }
         }
         Ok(Some(known))

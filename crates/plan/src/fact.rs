@@ -31,6 +31,9 @@ pub enum Reason {
     /// Instance by instance, numbers without bounds outgrew ours.
     #[error("numbers in the search grew beyond 64 bits")]
     LargeNumbers,
+    /// Numbers without bounds are too large for ours in the model that a solver found.
+    #[error("the numbers in the solver's model are beyond 64 bits")]
+    LargeModel,
     /// The checker's own numbers outgrew ours.
     #[error(transparent)]
     Checker(verify::Error),
@@ -58,14 +61,14 @@ impl Reason {
     #[must_use]
     pub fn code(&self) -> ReasonCode {
         match self {
-            Reason::Solver(Unknown::Timeout) => ReasonCode::Timeout,
+            Reason::Solver(Unknown::Timeout | Unknown::WaitsForEnd) => ReasonCode::Timeout,
             Reason::Solver(Unknown::Interrupted) => ReasonCode::Interrupted,
             Reason::Solver(Unknown::Memory | Unknown::MemoryLimit { .. }) => ReasonCode::OutOfMemory,
             Reason::Solver(Unknown::Incomplete(_)) => ReasonCode::Incomplete,
             Reason::Solver(Unknown::Said(_) | Unknown::Unsaid) => ReasonCode::SolverGaveUp,
             Reason::DeadEnds { .. } => ReasonCode::DeadEnds,
             Reason::NoEnd(_) => ReasonCode::NoEnd,
-            Reason::LargeNumbers | Reason::Checker(_) => ReasonCode::LargeNumbers,
+            Reason::LargeNumbers | Reason::LargeModel | Reason::Checker(_) => ReasonCode::LargeNumbers,
             Reason::Unverified(_) => ReasonCode::Unverified,
             Reason::Several(_) => ReasonCode::Several,
         }
@@ -136,6 +139,9 @@ pub enum Unsupported {
     /// A model says what no paths do.
     #[error("it describes no paths of the objective's systems")]
     NoPaths,
+    /// A model has numbers that are too large for ours.
+    #[error("its numbers are beyond 64 bits")]
+    LargeModel,
     /// A model has a value that cannot be read.
     #[error(transparent)]
     Value(PrintedModelError),

@@ -27,7 +27,7 @@ pub(crate) fn no_dead_ends(encoder: &Encoder<'_>, oracle: &mut Oracle<'_>) -> Re
             continue;
         }
         let Some(script) = encoder.writer.stuck(path) else { continue };
-        let mut dialogue = oracle.open(1, false)?;
+        let mut dialogue = oracle.open(1)?;
         if oracle.check(&mut dialogue, &script)? {
             return Err(Stop::Unknown(Reason::DeadEnds { system: encoder.task.system(path).name.clone() }));
         }
@@ -43,7 +43,7 @@ pub(crate) fn without_paths(encoder: &Encoder<'_>, oracle: &mut Oracle<'_>) -> R
             None => {
                 let mut query = Query::new(encoder, &[], Relevant::default());
                 query.paths.declare(&mut query.script, path, &Goal::new(&encoder.objective.formula, true))?;
-                let mut dialogue = oracle.open(1, false)?;
+                let mut dialogue = oracle.open(1)?;
                 oracle.check(&mut dialogue, &query.script)?
             }
         };

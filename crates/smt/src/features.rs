@@ -37,7 +37,15 @@ impl Features {
         let op = terms.op(t);
         self.quantifiers |= op == Op::Forall;
         match terms.sort(t) {
-            Sort::Bool => self.booleans |= matches!(op, Op::Symbol | Op::Bound),
+            Sort::Bool if !matches!(op, Op::Symbol | Op::Bound) => {}
+            sort => self.add_sort(sort),
+        }
+    }
+
+    /// Adds what a symbol of that sort needs.
+    pub fn add_sort(&mut self, sort: Sort) {
+        match sort {
+            Sort::Bool => self.booleans = true,
             Sort::BitVec(_) => self.bitvec = true,
             Sort::Int => self.int = true,
             Sort::Real => self.real = true,

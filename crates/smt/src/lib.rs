@@ -12,6 +12,7 @@ mod lexer;
 mod name;
 mod rational;
 mod read;
+mod request;
 mod script;
 mod term;
 mod terms;
@@ -22,7 +23,8 @@ pub use eval::{Evaluation, ModelCheck, Verdict, check_model, check_partial_model
 pub use features::{Features, logic};
 pub use lexer::{Context, Token, Tokens, parts, tokens};
 pub use rational::Rational;
-pub use read::{Benchmark, Origin, ReadError, read_script, read_value};
+pub use read::{Benchmark, Origin, ReadError, is_large_number, read_script, read_value};
+pub use request::Request;
 pub use script::{Script, Section};
 pub use term::{Enumeration, Op, Sort, Stem, Term};
 pub use terms::{Terms, View};

@@ -9,6 +9,9 @@ pub enum Unknown {
     /// The time is up.
     #[error("timeout")]
     Timeout,
+    /// The time is up, and the solver answers only once it gets no more input.
+    #[error("timeout: the solver answers only at the end of its input")]
+    WaitsForEnd,
     /// The search was cancelled.
     #[error("interrupted")]
     Interrupted,
@@ -93,7 +96,7 @@ pub enum Error {
         /// What it said.
         said: String,
     },
-    /// The solver spoke before it was asked.
+    /// The solver answered a check that it was not asked.
     #[error("solver {name} answered before it was asked{}", said_after(said))]
     Early {
         /// The solver.
@@ -110,6 +113,12 @@ pub enum Error {
     /// The solver had not enough memory.
     #[error("solver {name} ran out of memory")]
     Memory {
+        /// The solver.
+        name: String,
+    },
+    /// A value is a number that has no room here: no fault of the solver.
+    #[error("solver {name} has a model with numbers that are too large")]
+    LargeNumber {
         /// The solver.
         name: String,
     },

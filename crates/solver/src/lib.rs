@@ -20,8 +20,8 @@ pub use error::{Error, Unknown};
 #[doc(hidden)]
 pub use external::understand_output;
 pub use external::{
-    Catalog, ConfigError, Found, Install, PrintedModel, PrintedModelError, Profile, Spec, Standalone,
-    discover, end_with_parent, says_what_to_run,
+    Catalog, ConfigError, Found, Install, PrintedModel, PrintedModelError, Profile, Response, Said, Spec,
+    Standalone, discover, end_with_parent, responses, says_what_to_run,
 };
 pub use open::open;
 pub use session::{Answer, Identity, Options, QuerySize, Session};

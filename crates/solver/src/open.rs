@@ -50,7 +50,7 @@ impl FromStr for Spec {
             let what = format!("one solver is wanted here, not a list ({text})");
             return Err(Error::Unsupported { what });
         }
-        Ok(Spec::Command(text.to_owned()))
+        Ok(external::of_kind(text).unwrap_or_else(|| Spec::Command(text.to_owned())))
     }
 }
 
@@ -71,6 +71,7 @@ pub fn open(spec: &Spec, options: &Options) -> Result<Box<dyn Session>, Error> {
             None => Err(unknown(name)),
         },
         Spec::Configured(profile) => external::open_profile(profile, options),
+        Spec::Program(line, profile) => external::open_program(line, profile, options),
         Spec::Command(line) => external::open_command(line, options),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use hyperplan_smt::{Script, Status, Term, Value};
+use hyperplan_smt::{Features, Script, Status, Term, Value};
 use serde::Deserialize;
 
 use crate::deadline::Deadline;
@@ -87,6 +87,8 @@ pub struct Options {
     pub nested: bool,
     /// More than one check will be asked for.
     pub incremental: bool,
+    /// What the script may come to need after the first check: the logic is set before that, and has to leave room.
+    pub features: Features,
     /// Memory limit of a solver process, in MiB. Of the embedded engine, which shares our memory: how much this
     /// process may grow in physical memory after the session was opened.
     pub memory_mib: Option<u64>,

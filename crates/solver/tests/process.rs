@@ -6,8 +6,8 @@ use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use hyperplan_smt::{Script, Sort, Term};
-use hyperplan_solver::{Answer, Deadline, Error, Options, Session, Spec, Unknown, open};
+use hyperplan_smt::{Script, Sort, Term, Value};
+use hyperplan_solver::{Answer, Catalog, Deadline, Error, Options, Session, Spec, Unknown, open};
 use tempfile::TempDir;
 
 /// A fake solver.
@@ -114,6 +114,112 @@ fn errors_are_reported_even_if_an_answer_follows() {
         matches!(&error, Error::Reported { message, .. } if message == "line 3: no (such) thing"),
         "{error}"
     );
+}
+
+/// One that answers before it reads cannot be told from one that is fast: the order of its replies decides, in every run.
+#[test]
+fn answers_before_questions_are_treated_alike_in_every_run() {
+    let deadline = Deadline::after(Duration::from_secs(60));
+    let (script, x) = small();
+    let mut long = Script::new();
+    let stem = long.terms.stem("a rather long name of a symbol");
+    for i in 0..10_000 {
+        let x = long.terms.symbol(stem, Some(i), Sort::Bool);
+        long.clause(&[x]);
+    }
+    let directory = tempfile::tempdir().expect("a temporary directory");
+    for _ in 0..20 {
+        let unsat = fake(&directory, "echo unsat; exec cat > /dev/null");
+        for script in [&script, &long] {
+            let answer = session(&unsat, &Options::default()).check(script, &[], &deadline);
+            assert_eq!(answer.expect("an answer"), Answer::Unsat);
+        }
+        let both = fake(&directory, "echo sat; echo unsat; exec cat > /dev/null");
+        let mut session = session(&both, &Options::default());
+        assert_eq!(session.check(&script, &[], &deadline).expect("an answer"), Answer::Sat);
+        let error = session.values(&script, &[x]).expect_err("no values");
+        assert!(matches!(&error, Error::Early { said, .. } if said == "unsat"), "{error}");
+    }
+}
+
+/// A solver that reads everything before it says anything, and gives values.
+const BATCH: &str = "cat > \"$0.in\"; echo sat; grep -q get-value \"$0.in\" && echo '((x@0 true))'";
+
+#[test]
+fn a_solver_that_waits_for_the_end_of_its_input() {
+    let directory = tempfile::tempdir().expect("a temporary directory");
+    let program = fake(&directory, BATCH);
+    let (script, x) = small();
+    let soon = || Deadline::after(Duration::from_millis(300));
+    let answer = session(&program, &Options::default()).check(&script, &[], &soon());
+    assert_eq!(answer.expect("no error"), Answer::Unknown(Unknown::WaitsForEnd));
+    // That one only sleeps.
+    let sleeper = tempfile::tempdir().expect("a temporary directory");
+    let mut other = session(&fake(&sleeper, "exec sleep 300"), &Options::default());
+    assert_eq!(other.check(&script, &[], &soon()).expect("no error"), Answer::Unknown(Unknown::Timeout));
+    // Once that is known, it is served.
+    let entry =
+        format!("[[solver]]\nname = \"batch\"\nprogram = \"{}\"\nincremental = false\n", program.display());
+    let mut catalog = Catalog::default();
+    catalog.add(Path::new("hyperplan.toml"), &entry).expect("it is good");
+    let options = Options { incremental: true, ..Options::default() };
+    let mut session = open(&catalog.spec("batch").expect("it is there"), &options).expect("it was written");
+    for _ in 0..2 {
+        let deadline = Deadline::after(Duration::from_secs(20));
+        assert_eq!(session.check(&script, &[], &deadline).expect("an answer"), Answer::Sat);
+        assert_eq!(session.values(&script, &[x]).expect("values"), [Value::Bool(true)]);
+    }
+}
+
+#[test]
+fn numbers_without_room_are_not_the_solvers_fault() {
+    let mut script = Script::new();
+    let stem = script.terms.stem("n");
+    let n = script.terms.symbol(stem, Some(0), Sort::Int);
+    let zero = script.terms.int(0);
+    let positive = script.terms.le(zero, n);
+    script.assert(positive);
+    let digits = "9".repeat(60);
+    for (value, fits) in [("7", true), (&digits[..], false), (&format!("(- {digits})"), false)] {
+        let directory = tempfile::tempdir().expect("a temporary directory");
+        let replies = format!("*check-sat*) echo sat;; *get-value*) echo '((n@0 {value}))';;");
+        let program = fake(
+            &directory,
+            &format!("while read -r line; do case $line in {replies} esac; done < ${{1:-/dev/stdin}}"),
+        );
+        for line in ["", " {file}"] {
+            let spec = Spec::Command(format!("'{}'{line}", program.display()));
+            let mut session = open(&spec, &Options::default()).expect("it was just written");
+            let deadline = Deadline::after(Duration::from_secs(20));
+            assert_eq!(session.check(&script, &[], &deadline).expect("an answer"), Answer::Sat);
+            match session.values(&script, &[n]) {
+                Ok(values) => assert!(fits && values == [Value::Int(7)], "{values:?}"),
+                Err(error) => assert!(!fits && matches!(error, Error::LargeNumber { .. }), "{error}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn programs_are_known_by_their_names() {
+    for (line, name) in [("/usr/bin/z3", "z3"), ("./cvc5-1.2.0", "cvc5"), ("/opt/yices_smt2", "yices")] {
+        let spec: Spec = line.parse().expect("any command line will do");
+        assert_eq!((spec.name(), spec.profile().expect("it is known").name()), (line, name));
+    }
+    for line in ["/usr/bin/z3 -in", "/usr/bin/yices", "./z3-wrapper"] {
+        assert_eq!(line.parse::<Spec>().expect("any command line will do"), Spec::Command(line.to_owned()));
+    }
+    // It is sought where it is said to be, whatever else is there.
+    let Err(error) = open(&"/no/such/z3".parse().expect("good"), &Options::default()) else {
+        panic!("it does not exist")
+    };
+    assert!(matches!(&error, Error::Missing { tried, .. } if *tried == ["/no/such/z3"]), "{error}");
+    // The kind of a configured solver is that of its entry.
+    let mut catalog = Catalog::default();
+    let entry = "[[solver]]\nname = \"mine\"\nprogram = \"/opt/opensmt\"\nquantifiers = \"none\"\n";
+    catalog.add(Path::new("hyperplan.toml"), entry).expect("it is good");
+    let spec = catalog.spec("/usr/bin/opensmt-2.5").expect("good");
+    assert_eq!(spec.profile().expect("it is known").name(), "mine");
 }
 
 #[test]

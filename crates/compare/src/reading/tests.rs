@@ -1,4 +1,5 @@
 use super::*;
+use hyperplan_smt::Request;
 
 fn ended(code: i32, stdout: &str, stderr: &str) -> Measured {
     Measured {
@@ -78,7 +79,11 @@ fn failures_on_problems() {
 }
 
 fn query(checks: &[Option<Answer>]) -> Query {
-    Query { checks: checks.to_vec(), ..Query::default() }
+    Query { checks: checks.to_vec(), requests: vec![Request::Check; checks.len()], ..Query::default() }
+}
+
+fn of_query(measured: &Measured, query: &Query, over: bool) -> Reading {
+    super::of_query(measured, query, &Heard::new(query, &measured.stdout), over)
 }
 
 #[test]
@@ -136,10 +141,34 @@ fn failures_on_queries() {
 
 #[test]
 fn several_answers_to_one_check_are_none() {
-    let query = Query { checks: vec![None], ..Query::default() };
+    let query = query(&[None]);
     let of = |stdout: &str| of_query(&ended(0, stdout, ""), &query, false);
     assert_eq!(of("sat\nsat\n").status, Status::Sat);
     let reading = of("sat\nunsat\n");
     assert_eq!(reading.status, Status::Error);
     assert_eq!(reading.message.as_deref(), Some("it gave several answers to one check"));
+}
+
+#[test]
+fn the_answer_is_that_of_the_check() {
+    let of = |text: &str, stdout: &str| {
+        let reading = of_query(&ended(0, stdout, ""), &Query::scan(text), false);
+        (reading.status, reading.message)
+    };
+    let echo = "(echo \"sat\")(check-sat)(echo \"unsat\")";
+    assert_eq!(of(echo, "sat\nunsat\nunsat\n"), (Status::Unsat, None));
+    assert_eq!(of(echo, "\"sat\"\nunknown\n\"unsat\"\n"), (Status::Unknown, None));
+    assert_eq!(of(echo, "sat\n(error \"no products\")\n").0, Status::Error);
+    assert_eq!(of(echo, "sat\n").0, Status::Error);
+    assert_eq!(of("(check-sat)", "(error \"line 1:\nsat\n\")\n").0, Status::Error);
+    // What is said of the model is told; what is said of anything else is not.
+    let all = "(check-sat)(get-unsat-core)(get-model)";
+    let disowned = "after its answer the solver reported an error: an invalid model".to_owned();
+    assert_eq!(of(all, "sat\n(error \"no core\")\n()\n"), (Status::Sat, None));
+    assert_eq!(
+        of(all, "sat\n(error \"no core\")\n(error \"an invalid model\")\n"),
+        (Status::Sat, Some(disowned.clone()))
+    );
+    assert_eq!(of("(check-sat)", "sat\n(error \"an invalid model\")\n"), (Status::Sat, Some(disowned)));
+    assert_eq!(of(all, "unsat\n(p q)\n(error \"no model\")\n"), (Status::Unsat, None));
 }

@@ -11,7 +11,7 @@ use crate::writing::{Bound, Env, PathIx, Writer, Writing, all_of};
 use hyperplan_problem::{ActionId, Leaf, Mode, PathId, State, System, Trace};
 use hyperplan_relevance::Error;
 use hyperplan_relevance::{Goal, Instance, Known, Move, Numbering, Relevant, Start, Task, cases, generalize};
-use hyperplan_smt::{Model, Script, Term, Terms};
+use hyperplan_smt::{Features, Model, Script, Term, Terms};
 use hyperplan_space::{Commands, Graph, LIVE, Letter, MAX_COMMANDS, StateIx, code, holds_in};
 pub(crate) use path::Numbers;
 use path::{Builder, VariablePath, stuck_state};
@@ -124,6 +124,17 @@ impl Writer for ByVariable<'_> {
     ) -> Box<dyn Writing + 'e> {
         let (paths, enabled) = (TiVec::new(), FxHashMap::default());
         Box::new(VariableQuery { writer: self, paths, enabled, copies: copies.clone() })
+    }
+
+    fn features(&self) -> Features {
+        let mut features = Features::default();
+        for (path, rules) in self.rules.iter_enumerated() {
+            let types = self.task.system(path).vars.iter().map(|var| &var.ty);
+            let sorts =
+                types.map(|ty| self.numbers.sort(ty)).chain(self.numbers.sort_of_choice(&rules.commands));
+            sorts.for_each(|sort| features.add_sort(sort));
+        }
+        features
     }
 
     fn known(&self, trace: &Trace) -> Option<Known> {

@@ -25,13 +25,23 @@ pub(crate) enum Numbers {
 
 impl Numbers {
     /// The sort of a variable.
-    fn sort(self, ty: &Type) -> Sort {
+    pub(super) fn sort(self, ty: &Type) -> Sort {
         match (self, ty, bounds(ty)) {
             (_, Type::Bool, _) => Sort::Bool,
             (Numbers::Bits, _, Some((lo, hi))) => Sort::BitVec(width(lo, hi)),
             (Numbers::Reals, ..) | (_, Type::Real, _) => Sort::Real,
             _ => Sort::Int,
         }
+    }
+
+    /// The sort of the symbols that say which command is taken, where there is a choice.
+    pub(super) fn sort_of_choice(self, commands: &Commands) -> Option<Sort> {
+        let count = commands.all.len();
+        let sort = match self {
+            Numbers::Bits => Sort::BitVec(width(0, count as i64 - 1)),
+            Numbers::Integers | Numbers::Reals => Sort::Bool,
+        };
+        (count > 1).then_some(sort)
     }
 
     /// Whether an update may leave a value of that type open: a solver for integers and reals then finds it.

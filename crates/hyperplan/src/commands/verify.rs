@@ -8,7 +8,7 @@ use crate::load::{Given, Loaded};
 use crate::output::Output;
 use crate::report;
 use hyperplan_outlet::one_line;
-use hyperplan_plan::strategy_of_model;
+use hyperplan_plan::{Error, Unsupported, strategy_of_model};
 use hyperplan_problem::answer::{WitnessPath, to_witness};
 use hyperplan_problem::{Objective, Problem, Quantifier, Strategy, Trace};
 use hyperplan_render::{actions_line, table};
@@ -65,8 +65,13 @@ fn of_model<'l>(
     let objectives = loaded.selected(name, false)?;
     let strategy = |objective: &'l Objective| {
         let strategy = strategy_of_model(&loaded.problem, objective, &model, &Deadline::never());
-        let strategy = strategy
-            .map_err(|error| Failure::input(format_args!("{shown}: {}", Explain::default().error(&error))))?;
+        let strategy = strategy.map_err(|error| {
+            let failure = Failure::input(format_args!("{shown}: {}", Explain::default().error(&error)));
+            match error {
+                Error::Unsupported(Unsupported::LargeModel) => Failure { status: Exit::Undecided, ..failure },
+                _ => failure,
+            }
+        })?;
         Ok((objective, strategy))
     };
     objectives.into_iter().map(strategy).collect()

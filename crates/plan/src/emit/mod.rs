@@ -10,7 +10,7 @@ use crate::config::{Config, Quantifiers, Verdict};
 use crate::direct;
 use crate::fact::{Error, Note, Unsupported};
 use crate::oracle::{Oracle, Stop, solver_for};
-use crate::prepare::{decided, is_existential, is_finite};
+use crate::prepare::{decided, is_existential};
 use crate::solve::solve;
 use dialect::Dialect;
 use hyperplan_encode::{Encoder, Goal, Limits, Narrowing, States};
@@ -293,7 +293,7 @@ fn expected(
     exists: bool,
     notes: &mut Vec<Note>,
 ) -> Result<Status, Error> {
-    let Some(solver) = solver_for(!is_finite(encoder.problem, encoder.objective)) else {
+    let Some(solver) = solver_for(!encoder.is_finite()) else {
         notes.push(Note::NoArithmeticSolver);
         return Ok(Status::Unknown);
     };

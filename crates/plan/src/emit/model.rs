@@ -6,8 +6,8 @@ use crate::fact::{Error, Unsupported};
 use crate::prepare::is_existential;
 use hyperplan_encode::{Encoder, Goal, Limits, Narrowing, States};
 use hyperplan_problem::{Objective, PathId, Problem, Strategy};
-use hyperplan_smt::{Model, Term};
-use hyperplan_solver::{Deadline, PrintedModel};
+use hyperplan_smt::{Model, Sort, Term, Value, is_large_number};
+use hyperplan_solver::{Deadline, PrintedModel, PrintedModelError};
 use std::cmp::Reverse;
 
 /// The paths that a model of an emitted query describes.
@@ -34,10 +34,12 @@ pub fn strategy_of_model(
             readings.extend(encoder.ok());
         }
     }
-    let best = readings.into_iter().min_by_key(|reading| (Reverse(reading.present), reading.absent));
-    match best {
+    // The same symbols may stand for numbers of several sorts, of which their values fit some.
+    let rank = |reading: &Reading| (Reverse(reading.present), reading.absent, reading.fit());
+    match readings.into_iter().min_by_key(rank) {
         Some(reading) if reading.present > 0 || reading.absent == 0 => reading.strategy,
         _ if deadline.passed() => Err(Unsupported::OutOfTime.into()),
+        _ if model.is_empty() => Err(Unsupported::Value(PrintedModelError::Empty).into()),
         _ => Err(Unsupported::ForeignModel(objective.name.clone()).into()),
     }
 }
@@ -48,6 +50,17 @@ struct Reading {
     present: usize,
     absent: usize,
     strategy: Result<Strategy, Error>,
+}
+
+impl Reading {
+    /// How well the values fit: the less the better.
+    fn fit(&self) -> u8 {
+        match &self.strategy {
+            Ok(_) => 0,
+            Err(Error::Unsupported(Unsupported::Value(_))) => 2,
+            Err(_) => 1,
+        }
+    }
 }
 
 fn read(encoder: &Encoder<'_>, printed: &PrintedModel) -> Result<Reading, Error> {
@@ -71,15 +84,28 @@ fn strategy(
 ) -> Result<Strategy, Error> {
     let terms = &direct.query.script.terms;
     let mut model = Model::new();
-    for &symbol in symbols {
-        let value = printed.value(terms, symbol).map_err(Unsupported::Value)?;
+    // What no assertion reads is not printed, but a part of the paths.
+    let paths = block.iter().filter_map(|&path| direct.path(path));
+    let unread: Vec<Term> = paths.flat_map(|path| direct.query.paths.symbols(path)).collect();
+    for &symbol in symbols.iter().chain(&unread) {
+        let sort = terms.sort(symbol);
+        let value = printed.value(terms, symbol).map_err(|error| match &error {
+            PrintedModelError::Value { value, .. }
+                if matches!(sort, Sort::Int | Sort::Real) && is_large_number(value) =>
+            {
+                Unsupported::LargeModel
+            }
+            _ => Unsupported::Value(error),
+        })?;
         // A symbol that does not matter may be left out; any value will do.
-        model.insert(symbol, value.unwrap_or_else(|| hyperplan_smt::Value::default_of(terms.sort(symbol))));
+        model.insert(symbol, value.unwrap_or_else(|| Value::default_of(sort)));
     }
     let trace = |&path: &PathId| {
         let declared = direct.path(path)?;
         Some(direct.query.paths.decode(declared, &model)?.trace(path))
     };
     let traces: Option<Vec<_>> = block.iter().map(trace).collect();
-    Ok(Strategy { traces: traces.ok_or(Unsupported::NoPaths)? })
+    // A model that was read describes paths, unless its numbers are too large for ours.
+    let none = if direct.query.encoder.is_finite() { Unsupported::NoPaths } else { Unsupported::LargeModel };
+    Ok(Strategy { traces: traces.ok_or(none)? })
 }

@@ -7,7 +7,8 @@ mod tests;
 use crate::config::Config;
 use crate::evidence::{Evidence, full};
 use crate::fact::{Error, Note, Reason, Wrong};
-use hyperplan_smt::{Model, Script, Term, check_model};
+use hyperplan_encode::Encoder;
+use hyperplan_smt::{Features, Model, Script, Term, check_model};
 use hyperplan_solver::{self as solver, Answer, Identity, Options, QuerySize, Session, Spec, Unknown, open};
 use std::time::Instant;
 
@@ -82,13 +83,23 @@ impl<'c> Oracle<'c> {
         self.account
     }
 
-    /// Starts a dialogue about queries with so many blocks of quantifiers, the leading one as free symbols.
-    pub(crate) fn open(&mut self, blocks: usize, incremental: bool) -> Result<Dialogue, Stop> {
+    /// Starts a dialogue about one query with so many blocks of quantifiers, the leading one as free symbols.
+    pub(crate) fn open(&mut self, blocks: usize) -> Result<Dialogue, Stop> {
+        self.dialogue(blocks, None)
+    }
+
+    /// Starts a dialogue about a query without quantifiers that grows, perhaps to what needs all that.
+    pub(crate) fn open_growing(&mut self, features: Features) -> Result<Dialogue, Stop> {
+        self.dialogue(1, Some(features))
+    }
+
+    fn dialogue(&mut self, blocks: usize, growing: Option<Features>) -> Result<Dialogue, Stop> {
         let options = Options {
             seed: self.config.seed,
             quantified: blocks > 1,
             nested: blocks > 2,
-            incremental,
+            incremental: growing.is_some(),
+            features: growing.unwrap_or_default(),
             memory_mib: self.config.memory_mib,
             queries: self.config.queries.clone(),
             status: None,
@@ -128,6 +139,7 @@ impl<'c> Oracle<'c> {
         match answer {
             Answer::Sat => Ok(true),
             Answer::Unsat => self.cross_check(dialogue, script).map(|()| false),
+            Answer::Unknown(unknown @ Unknown::WaitsForEnd) => Err(Stop::Unknown(unknown.into())),
             // The solver may give its own name to what our clock did.
             Answer::Unknown(_) if self.config.deadline.passed() => Err(Stop::Unknown(self.late())),
             Answer::Unknown(unknown) => Err(Stop::Unknown(unknown.into())),
@@ -153,6 +165,7 @@ impl<'c> Oracle<'c> {
         match &values {
             Err(solver::Error::Deadline { .. }) => return Err(Stop::Unknown(self.late())),
             Err(solver::Error::Memory { .. }) => return Err(Stop::Unknown(Unknown::Memory.into())),
+            Err(solver::Error::LargeNumber { .. }) => return Err(Stop::Unknown(Reason::LargeNumbers)),
             _ => {}
         }
         let model: Model = symbols.into_iter().zip(values?).collect();
@@ -187,9 +200,14 @@ impl<'c> Oracle<'c> {
         }
     }
 
-    /// A model that describes no path.
-    pub(crate) fn no_path(&self, dialogue: &Dialogue) -> Error {
-        Error::WrongModel { solver: dialogue.session.identity().name, wrong: Wrong::NoPath, query: None }
+    /// A model that describes no path. A model that satisfies its query does, unless variables have no bounds: then its
+    /// numbers may be too large for ours.
+    pub(crate) fn no_path(&self, dialogue: &Dialogue, encoder: &Encoder<'_>) -> Stop {
+        if !encoder.is_finite() {
+            return Stop::Unknown(Reason::LargeNumbers);
+        }
+        let solver = dialogue.session.identity().name;
+        Error::WrongModel { solver, wrong: Wrong::NoPath, query: None }.into()
     }
 }
 

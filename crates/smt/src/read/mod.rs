@@ -22,7 +22,7 @@ use crate::terms::Terms;
 use expand::Macro;
 use names::Names;
 
-pub use value::read_value;
+pub use value::{is_large_number, read_value};
 
 /// A benchmark that was read: what it declares, and what it asserts before its check.
 ///

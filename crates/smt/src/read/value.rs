@@ -62,6 +62,24 @@ fn number(tokens: &[Token<'_>]) -> Option<Value> {
     }
 }
 
+/// Whether that is a number with more digits than there is room for, which is not the fault of who wrote it.
+#[must_use]
+pub fn is_large_number(text: &str) -> bool {
+    // The longest number that always fits has so many.
+    const DIGITS: usize = 18;
+    let mut large = false;
+    let fits = tokens(text).all(|(_, token)| match token {
+        Token::Open | Token::Close | Token::Word("-" | "/") => true,
+        Token::Number(text) | Token::Word(text) => {
+            let digits = text.strip_prefix('-').unwrap_or(text);
+            large |= digits.len() > DIGITS;
+            digits.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.')
+        }
+        _ => false,
+    });
+    fits && large
+}
+
 fn real(value: Value) -> Option<Rational> {
     match value {
         Value::Int(i) => Rational::new(i, 1),
@@ -113,6 +131,21 @@ mod tests {
         let vectors = ["(_ bv5 2)", "(_ bv5 129)", "(_ bv0 0)", "(_ bv 3)", "#b", "#xg"];
         for text in all.into_iter().chain(vectors).chain([deep.as_str()]) {
             assert_eq!(any_value(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn numbers_without_room() {
+        let digits = "9".repeat(39);
+        for text in [&digits, &format!("(- {digits})"), &format!("-{digits}"), &format!("(/ 1.0 {digits}.0)")]
+        {
+            assert_eq!((any_value(text), is_large_number(text)), (None, true), "{text}");
+        }
+        let symbol = format!("x{digits}");
+        let quoted = format!("|{digits}|");
+        let power = format!("(+ {digits} 1)");
+        for text in ["", "7", "(- 3)", "(/ 1 0)", "true", "#b01", &symbol, &quoted, &power] {
+            assert!(!is_large_number(text), "{text}");
         }
     }
 

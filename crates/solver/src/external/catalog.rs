@@ -4,10 +4,12 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock};
 
+use hyperplan_smt::{Request, parts};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use toml::Spanned;
 
+use super::line::{is_kind, split_list};
 use super::profile::{Assumptions, FILE, Install, Profile, Theory};
 use super::spec::Spec;
 use crate::embedded;
@@ -101,8 +103,15 @@ impl Catalog {
     pub fn spec(&self, text: &str) -> Result<Spec, Error> {
         match self.profile(text.trim()) {
             Some(profile) if profile.origin.is_some() => Ok(Spec::Configured(Arc::clone(profile))),
-            _ => text.parse(),
+            None => self.of_kind(text.trim()).map_or_else(|| text.parse(), Ok),
+            Some(_) => text.parse(),
         }
+    }
+
+    /// A program that is given by its path, or with its version, and is known by its name.
+    fn of_kind(&self, line: &str) -> Option<Spec> {
+        let profile = self.profiles.iter().find(|profile| is_kind(line, &profile.program))?;
+        Some(Spec::Program(line.to_owned(), Arc::clone(profile)))
     }
 
     /// The solvers in a list with commas. A command line that has a comma itself is written with quotes around the
@@ -241,6 +250,11 @@ impl Entry {
             );
             return Err((at, what));
         }
+        let asks = |command: &&String| Request::of(&words(command)).is_some();
+        if let Some(command) = self.setup.iter().flatten().find(asks) {
+            let what = format!("{command} in `setup` has an answer, which nobody waits for; leave it out");
+            return Err((at, what));
+        }
         Ok(Profile {
             name,
             aliases: self.aliases.unwrap_or(base.aliases),
@@ -262,18 +276,10 @@ impl Entry {
     }
 }
 
-/// The parts between commas that are outside of quotes.
-pub(crate) fn split_list(text: &str) -> Vec<&str> {
-    let mut quote = None;
-    let separates = |c: char| {
-        match quote {
-            Some(open) if c == open => quote = None,
-            None if c == '"' || c == '\'' => quote = Some(c),
-            _ => {}
-        }
-        c == ',' && quote.is_none()
-    };
-    text.split(separates).collect()
+/// The words of a command, as far as they are no lists.
+fn words(command: &str) -> Vec<&str> {
+    let parts = parts(command).unwrap_or_default();
+    parts.into_iter().take_while(|part| !part.starts_with('(')).collect()
 }
 
 /// What is wrong with a name.
@@ -307,6 +313,11 @@ pub(crate) fn profiles() -> &'static [Arc<Profile>] {
 /// The profile of that name in hyperplan's own table.
 pub(crate) fn profile(name: &str) -> Option<&'static Arc<Profile>> {
     KNOWN.profile(name)
+}
+
+/// The same for hyperplan's own table.
+pub(crate) fn of_kind(line: &str) -> Option<Spec> {
+    KNOWN.of_kind(line)
 }
 
 /// Refuses quantifiers beyond those that the solver takes, and names solvers that take them.

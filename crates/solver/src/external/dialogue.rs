@@ -84,11 +84,10 @@ impl Dialogue {
         running.printer.scan(terms, assumptions);
         let mut text = Vec::with_capacity(2 * PIECE);
         if running.checks == 0 {
-            let logic = self.program.logic(running.printer.features().beside(terms), &self.options)?;
+            let expected = running.printer.features().beside(terms).union(self.options.features);
+            let logic = self.program.logic(expected, &self.options)?;
             text.extend_from_slice(self.program.preamble(&logic, &self.options).as_bytes());
             running.logic = Some(logic);
-        } else {
-            running.exchange.demand_silence()?;
         }
         running.checks += 1;
         if std::mem::take(&mut running.pushed) {
@@ -109,10 +108,6 @@ impl Dialogue {
             }
         }
         let _ = self.ask(running, script, assumptions, &mut text);
-        if running.checks == 1 {
-            // What it says from now on may be the answer.
-            running.exchange.refuse_answers()?;
-        }
         running.bytes += text.len();
         running.exchange.send(text, deadline);
         Ok(())
@@ -179,7 +174,6 @@ impl Dialogue {
         script: &Script,
         symbols: &[Term],
     ) -> Result<Vec<Value>, Error> {
-        running.exchange.demand_silence()?;
         let ask = |symbols| get_value(&running.printer, script, symbols);
         let mut text: Vec<u8> = symbols.chunks(ASK).flat_map(ask).collect();
         let version = self.program.is_to_tell_version();
@@ -229,6 +223,9 @@ impl Dialogue {
         self.size = QuerySize { clauses, variables, bytes: running.bytes, logic: running.logic.clone() };
         // On an error or at the deadline the process is dropped, which kills it.
         let answer = match running.exchange.answer(deadline)? {
+            None if !deadline.cancelled() && running.exchange.answers_at_end() => {
+                return Ok(Answer::Unknown(Unknown::WaitsForEnd));
+            }
             None => return Ok(Answer::Unknown(deadline.reason())),
             Some(Answer::Unknown(Unknown::Unsaid)) => {
                 running.exchange.send(REASON.to_vec(), deadline);

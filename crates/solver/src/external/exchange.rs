@@ -1,8 +1,12 @@
 //! A process with what was said to it and by it: sending, understanding replies, and telling what went wrong.
+//!
+//! Replies are matched to commands by their order alone, never by when they come: a solver that answers before it is
+//! asked cannot be told from one that is fast, and is treated alike in every run. What it says first is the answer to
+//! the first check; a reply that is none to the command whose turn it is is the solver's fault.
 
 use std::time::Duration;
 
-use hyperplan_smt::{Script, Term, Value, read_value};
+use hyperplan_smt::{Script, Sort, Term, Value, is_large_number, read_value};
 
 use super::process::{Next, Process};
 use super::program::Program;
@@ -14,6 +18,9 @@ use crate::transcript::Transcript;
 
 /// How long a solver that gave up may take to say why.
 const PATIENCE: Duration = Duration::from_secs(1);
+
+/// How long a solver that got the end of its input may take to answer: the time is up already.
+const MOMENT: Duration = Duration::from_millis(300);
 
 /// Asks why the answer is not known.
 pub(super) const REASON: &[u8] = b"(get-info :reason-unknown)\n";
@@ -92,32 +99,6 @@ impl Exchange {
         Ok(next)
     }
 
-    /// Refuses a process that has spoken before it was asked: its replies are out of step.
-    pub(super) fn demand_silence(&mut self) -> Result<(), Error> {
-        while let Some(reply) = self.process.said_before() {
-            if let Some(transcript) = &mut self.transcript {
-                transcript.comment(reply.text());
-            }
-            match reply::meaning(&reply) {
-                Meaning::Noise => {}
-                Meaning::Error(message) => return Err(self.reported(message)),
-                Meaning::Answer(_) | Meaning::Timeout | Meaning::Other => {
-                    return Err(self.early(reply.text()));
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Refuses a process that has answered before it was asked anything. One that does so a little later cannot be told
-    /// from one that is fast: that takes a cross-check.
-    pub(super) fn refuse_answers(&mut self) -> Result<(), Error> {
-        let is_answer = |reply: &&Reply| matches!(reply::meaning(reply), Meaning::Answer(_));
-        let Some(last) = self.process.unread().filter(is_answer).last() else { return Ok(()) };
-        let said = last.text().to_owned();
-        Err(self.early(&said))
-    }
-
     /// The answer to a check, from what the solver says; `None` at the deadline.
     pub(super) fn answer(&mut self, deadline: &Deadline) -> Result<Option<Answer>, Error> {
         loop {
@@ -128,9 +109,8 @@ impl Exchange {
             };
             match reply::meaning(&reply) {
                 Meaning::Noise => {}
-                Meaning::Answer(_) if self.process.is_cut() => {
-                    return Err(self.misunderstood("assert", reply.text()));
-                }
+                // It was not asked: the time was up before that.
+                Meaning::Answer(_) if self.process.is_cut() && deadline.passed() => return Ok(None),
                 Meaning::Answer(Some(true)) => return Ok(Some(Answer::Sat)),
                 Meaning::Answer(Some(false)) => return Ok(Some(Answer::Unsat)),
                 Meaning::Answer(None) => return Ok(Some(Answer::Unknown(Unknown::Unsaid))),
@@ -139,6 +119,17 @@ impl Exchange {
                 Meaning::Other => return Err(self.misunderstood("check-sat", reply.text())),
             }
         }
+    }
+
+    /// Of a process that has not answered yet, whether it does once it gets no more input; it has a moment for that, and
+    /// cannot be asked any more.
+    pub(super) fn answers_at_end(&mut self) -> bool {
+        let waits = !self.process.is_cut() && self.is_open();
+        self.lost = true;
+        self.process.close_input();
+        let moment = Deadline::after(MOMENT);
+        let answered = |reply: &Reply| matches!(reply::meaning(reply), Meaning::Answer(_));
+        waits && matches!(self.next(&moment), Ok(Next::Reply(reply)) if answered(&reply))
     }
 
     /// Why the solver said unknown, in the reply to [`REASON`] after so many that do not matter. A solver that does not say
@@ -181,18 +172,28 @@ impl Exchange {
                 Next::Reply(reply) => match reply::meaning(&reply) {
                     Meaning::Noise => {}
                     Meaning::Error(message) => return Err(self.reported(message)),
-                    Meaning::Answer(_) | Meaning::Timeout | Meaning::Other => break reply,
+                    Meaning::Answer(_) | Meaning::Timeout => return Err(self.early(reply.text())),
+                    Meaning::Other => break reply,
                 },
             }
         };
-        self.sorted(script, symbols, &reply).ok_or_else(|| self.misunderstood("get-value", reply.text()))
-    }
-
-    fn sorted(&self, script: &Script, symbols: &[Term], reply: &Reply) -> Option<Vec<Value>> {
-        let values = reply::values(reply).filter(|values| values.len() == symbols.len())?;
-        let pairs = values.into_iter().zip(symbols);
+        let texts = reply::values(&reply).filter(|values| values.len() == symbols.len());
         let terms = &script.terms;
-        pairs.map(|(text, &symbol)| read_value(terms, terms.sort(symbol), text)).collect()
+        let mut values = Vec::with_capacity(symbols.len());
+        for (text, &symbol) in texts.iter().flatten().zip(symbols) {
+            let sort = terms.sort(symbol);
+            match read_value(terms, sort, text) {
+                Some(value) => values.push(value),
+                None if matches!(sort, Sort::Int | Sort::Real) && is_large_number(text) => {
+                    return Err(Error::LargeNumber { name: self.name.clone() });
+                }
+                None => return Err(self.misunderstood("get-value", reply.text())),
+            }
+        }
+        match texts {
+            Some(_) => Ok(values),
+            None => Err(self.misunderstood("get-value", reply.text())),
+        }
     }
 
     /// It ended without the reply that was due.
@@ -221,7 +222,7 @@ impl Exchange {
         Error::Protocol { name: self.name.clone(), asked: asked.to_owned(), said }
     }
 
-    /// It said something before it was asked.
+    /// It answered a check that it was not asked.
     fn early(&mut self, said: &str) -> Error {
         match self.misunderstood("", said) {
             Error::Protocol { name, said, .. } => Error::Early { name, said },

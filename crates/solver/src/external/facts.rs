@@ -21,7 +21,7 @@ impl Spec {
                 Some(Arc::new(Profile { quantifiers: Quantifiers::None, theories, ..plain }))
             }
             Spec::Profile(name) => profile(name).cloned(),
-            Spec::Configured(profile) => Some(Arc::clone(profile)),
+            Spec::Configured(profile) | Spec::Program(_, profile) => Some(Arc::clone(profile)),
             Spec::Command(_) => None,
         }
     }

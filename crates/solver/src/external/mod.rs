@@ -5,6 +5,7 @@ mod dialogue;
 mod discover;
 mod exchange;
 mod facts;
+mod line;
 mod model;
 mod one_shot;
 mod probe;
@@ -12,6 +13,7 @@ mod process;
 mod profile;
 mod program;
 mod reply;
+mod response;
 mod spec;
 mod standalone;
 mod version;
@@ -27,14 +29,16 @@ use crate::error::Error;
 use crate::session::{Options, Session};
 
 pub use catalog::{Catalog, ConfigError, says_what_to_run};
-pub(crate) use catalog::{demand_at_most, profile, split_list};
+pub(crate) use catalog::{demand_at_most, of_kind, profile};
 pub(crate) use discover::for_arithmetic;
 pub use discover::{Found, discover};
+pub(crate) use line::split_list;
 pub use model::{PrintedModel, PrintedModelError};
 pub use process::end_with_parent;
 pub use profile::{Install, Profile};
 #[doc(hidden)]
 pub use reply::understand_output;
+pub use response::{Response, Said, responses};
 pub use spec::Spec;
 pub use standalone::Standalone;
 
@@ -43,13 +47,23 @@ pub(crate) fn open_profile(profile: &Arc<Profile>, options: &Options) -> Result<
     Ok(session(Program::of_profile(profile, options)?, options))
 }
 
+/// A session with a program of a kind that is known.
+pub(crate) fn open_program(
+    line: &str,
+    profile: &Arc<Profile>,
+    options: &Options,
+) -> Result<Box<dyn Session>, Error> {
+    Ok(session(Program::of_kind(line, profile, options)?, options))
+}
+
 /// A session with any command that reads SMT-LIB from its standard input or a file.
 pub(crate) fn open_command(line: &str, options: &Options) -> Result<Box<dyn Session>, Error> {
     Ok(session(Program::of_command(line)?, options))
 }
 
 fn session(program: Program, options: &Options) -> Box<dyn Session> {
-    if program.takes_file() {
+    // One that answers a single check may wait for the end of its input.
+    if program.takes_file() || !program.profile.incremental {
         return Box::new(OneShot::new(program, options));
     }
     Box::new(Dialogue::new(program, options))

@@ -47,7 +47,9 @@ impl PrintedModel {
         let (mut model, mut trouble, mut empty) = (PrintedModel::default(), None, false);
         while let Some(reply) = splitter.next() {
             match meaning(&reply) {
-                Meaning::Answer(Some(true)) | Meaning::Noise => {}
+                Meaning::Noise => {}
+                // Some print nothing for a model without symbols.
+                Meaning::Answer(Some(true)) => empty = true,
                 Meaning::Answer(Some(false)) => trouble = Some(PrintedModelError::NoModel("unsat")),
                 Meaning::Answer(None) | Meaning::Timeout => {
                     trouble = trouble.or(Some(PrintedModelError::NoModel("unknown")));
@@ -56,7 +58,7 @@ impl PrintedModel {
                 Meaning::Other => {
                     if let Reply::Expression(text) = &reply {
                         empty |= matches!(parts(text).as_deref(), Some([] | ["model"]));
-                        model.entry(text);
+                        empty |= model.entry(text);
                     }
                 }
             }
@@ -64,22 +66,27 @@ impl PrintedModel {
         match trouble {
             // What comes with such an answer is a guess.
             Some(PrintedModelError::NoModel(answer)) => Err(PrintedModelError::NoModel(answer)),
-            _ if !model.values.is_empty() || empty => Ok(model),
-            trouble => Err(trouble.unwrap_or(PrintedModelError::Empty)),
+            trouble if model.is_empty() && !(empty && trouble.is_none()) => {
+                Err(trouble.unwrap_or(PrintedModelError::Empty))
+            }
+            _ => Ok(model),
         }
     }
 
-    /// An entry, or a list of entries: at most one within the other.
-    fn entry(&mut self, text: &str) {
-        if self.single(text) {
-            return;
-        }
-        for part in parts(text).unwrap_or_default() {
-            self.single(part);
-        }
+    /// Whether it gives no value.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty()
     }
 
-    /// `(define-fun x () S v)`, `(= x v)` or `(x v)`.
+    /// An entry, or a list of entries, at most one within the other; whether there is one.
+    fn entry(&mut self, text: &str) -> bool {
+        let each = parts(text).unwrap_or_default();
+        // Each of them is kept.
+        self.single(text) || each.into_iter().filter(|part| self.single(part)).count() > 0
+    }
+
+    /// `(define-fun x () S v)`, `(= x v)` or `(x v)`. Functions are not kept.
     fn single(&mut self, text: &str) -> bool {
         let (name, value) = match parts(text).as_deref() {
             Some(["define-fun", name, arguments, _, value])
@@ -87,6 +94,7 @@ impl PrintedModel {
             {
                 (*name, *value)
             }
+            Some(["define-fun" | "define-fun-rec" | "function", _, _, ..]) => return true,
             Some(["=", name, value]) => (*name, *value),
             Some([name, value]) if !name.starts_with('(') && !value.starts_with("(define-fun") => {
                 (*name, *value)

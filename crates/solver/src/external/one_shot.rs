@@ -1,4 +1,5 @@
-//! The session of an external solver that takes a file: each check is a process of its own.
+//! The session of an external solver that takes a whole query, in a file or up to the end of its input: each check is a
+//! process of its own.
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
@@ -15,13 +16,23 @@ use crate::deadline::Deadline;
 use crate::error::{Error, Unknown};
 use crate::session::{Answer, Identity, Options, QuerySize, Session};
 
-/// Writes each query into a temporary file, with all questions after the check, since there is no asking later: the
-/// version, all values, why the answer is not known. What a solver says to those that do not fit its answer does not matter.
+/// Each query has all questions after the check, since there is no asking later: the version, all values, why the answer
+/// is not known. What a solver says to those that do not fit its answer does not matter.
 pub(super) struct OneShot {
     program: Program,
     options: Options,
-    model: Option<BTreeMap<Term, Value>>,
+    model: Known,
     size: QuerySize,
+}
+
+/// What is known of the last check's model.
+enum Known {
+    /// There is none.
+    Nothing,
+    /// All of it.
+    Values(BTreeMap<Term, Value>),
+    /// It has numbers for which there is no room.
+    TooLarge,
 }
 
 /// A query with its questions.
@@ -35,20 +46,24 @@ struct Query {
 
 impl OneShot {
     pub(super) fn new(program: Program, options: &Options) -> OneShot {
-        OneShot { program, options: options.clone(), model: None, size: QuerySize::default() }
+        OneShot { program, options: options.clone(), model: Known::Nothing, size: QuerySize::default() }
     }
 
     fn run(&mut self, script: &Script, assumptions: &[Term], deadline: &Deadline) -> Result<Answer, Error> {
         let Query { text, asks_version, symbols } = self.query(script, assumptions)?;
-        let file = temporary(&text).map_err(|source| Error::Io {
+        let file = self.program.takes_file().then(|| temporary(&text)).transpose();
+        let file = file.map_err(|source| Error::Io {
             what: "cannot write the query to a file (TMPDIR says where)".to_owned(),
             source,
         })?;
-        let path = file.path().display().to_string();
+        let path = file.as_ref().map_or_else(String::new, |file| file.path().display().to_string());
         let arguments: Vec<String> =
             self.program.arguments.iter().map(|word| word.replace(FILE, &path)).collect();
         let mut exchange = Exchange::start(&self.program, &arguments, &self.options)?;
-        exchange.keep(&text);
+        match &file {
+            Some(_) => exchange.keep(&text),
+            None => exchange.send(text, deadline),
+        }
         exchange.close_input();
         let Some(answer) = exchange.answer(deadline)? else {
             return Ok(Answer::Unknown(deadline.reason()));
@@ -60,10 +75,15 @@ impl OneShot {
             Answer::Sat => {
                 let mut model = BTreeMap::new();
                 for asked in symbols.chunks(ASK) {
-                    let values = exchange.values(script, asked, deadline)?;
-                    model.extend(asked.iter().copied().zip(values));
+                    match exchange.values(script, asked, deadline) {
+                        Err(Error::LargeNumber { .. }) => {
+                            self.model = Known::TooLarge;
+                            return Ok(Answer::Sat);
+                        }
+                        values => model.extend(asked.iter().copied().zip(values?)),
+                    }
                 }
-                self.model = Some(model);
+                self.model = Known::Values(model);
                 Ok(Answer::Sat)
             }
             Answer::Unknown(Unknown::Unsaid) => {
@@ -116,7 +136,7 @@ pub(super) fn temporary(text: &[u8]) -> std::io::Result<NamedTempFile> {
 
 impl Session for OneShot {
     fn check(&mut self, script: &Script, assumptions: &[Term], deadline: &Deadline) -> Result<Answer, Error> {
-        self.model = None;
+        self.model = Known::Nothing;
         if assumptions.contains(&Term::FALSE) {
             return Ok(Answer::Unsat);
         }
@@ -130,8 +150,12 @@ impl Session for OneShot {
     }
 
     fn values(&mut self, script: &Script, symbols: &[Term]) -> Result<Vec<Value>, Error> {
-        let model = self.model.as_ref();
-        let model = model.ok_or_else(|| Error::NoModel { name: self.program.profile.name.clone() })?;
+        let name = || self.program.profile.name.clone();
+        let model = match &self.model {
+            Known::Values(model) => model,
+            Known::TooLarge => return Err(Error::LargeNumber { name: name() }),
+            Known::Nothing => return Err(Error::NoModel { name: name() }),
+        };
         let value = |t: &Term| {
             let known = model.get(&t.positive()).copied();
             known.unwrap_or_else(|| Value::default_of(script.terms.sort(*t)))

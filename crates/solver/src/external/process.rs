@@ -122,27 +122,6 @@ impl Process {
         let _ = self.input.try_send(Vec::new());
     }
 
-    /// What it has said already; of this, nothing can be the answer to what is asked from now on.
-    pub(super) fn said_before(&mut self) -> Option<Reply> {
-        while let Ok(chunk) = self.output.try_recv() {
-            self.splitter.feed(&chunk);
-            if self.stuck() {
-                break;
-            }
-        }
-        self.splitter.next()
-    }
-
-    /// What it has said already, which stays to be read.
-    pub(super) fn unread(&mut self) -> impl Iterator<Item = &Reply> {
-        while !self.stuck()
-            && let Ok(chunk) = self.output.try_recv()
-        {
-            self.splitter.feed(&chunk);
-        }
-        self.splitter.replies()
-    }
-
     /// Whether it can say nothing more.
     pub(super) fn has_ended(&self) -> bool {
         self.ended

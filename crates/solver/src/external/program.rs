@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::catalog::{demand_at_most, profiles};
+use super::line::split_words;
 use super::profile::{FILE, Profile};
 use super::version::Version;
 use crate::embedded;
@@ -29,16 +30,27 @@ impl Program {
         let (path, tried) = locate(profile);
         let hint = || format!("{}; or set {}", profile.install, profile.variable());
         let path = path.ok_or_else(|| Error::Missing { name: profile.name.clone(), tried, hint: hint() })?;
+        Ok(Program::at(path, profile, options))
+    }
+
+    /// The program that a command line without arguments names, of a kind that is known.
+    pub(super) fn of_kind(line: &str, profile: &Arc<Profile>, options: &Options) -> Result<Program, Error> {
+        demand_at_most(options, profile.quantifiers, &profile.name)?;
+        let Program { path, .. } = Program::of_command(line)?;
+        Ok(Program::at(path, profile, options))
+    }
+
+    fn at(path: PathBuf, profile: &Arc<Profile>, options: &Options) -> Program {
         let one_shot =
             !profile.incremental || !options.incremental || options.quantifiers() > Quantifiers::None;
         let one_shot = profile.one_shot.as_ref().filter(|_| one_shot);
-        Ok(Program {
+        Program {
             version: Version::of(&path, &profile.version),
             path,
             arguments: one_shot.unwrap_or(&profile.arguments).clone(),
             one_shot: one_shot.is_some() || !profile.incremental,
             profile: Arc::clone(profile),
-        })
+        }
     }
 
     /// The program of a command line. One that names `{file}` is given the query in a file.
@@ -132,26 +144,6 @@ fn similar(program: &str) -> Option<&'static str> {
         .filter(|(distance, name)| *distance <= if name.len() > 4 { 2 } else { 1 })
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, name)| name)
-}
-
-/// Words between blanks; single or double quotes keep blanks together.
-fn split_words(line: &str) -> Vec<String> {
-    let mut words = Vec::new();
-    let mut word: Option<String> = None;
-    let mut quote = None;
-    for c in line.chars() {
-        match quote {
-            Some(q) if c == q => quote = None,
-            None if c == '"' || c == '\'' => {
-                quote = Some(c);
-                word.get_or_insert_default();
-            }
-            None if c.is_whitespace() => words.extend(word.take()),
-            _ => word.get_or_insert_default().push(c),
-        }
-    }
-    words.extend(word);
-    words
 }
 
 #[cfg(test)]

@@ -115,11 +115,6 @@ impl Splitter {
         Some(reply)
     }
 
-    /// What was not taken yet.
-    pub(super) fn replies(&self) -> impl Iterator<Item = &Reply> {
-        self.replies.iter()
-    }
-
     pub(super) fn unread(&self) -> usize {
         self.replies.len()
     }

@@ -16,6 +16,8 @@ pub enum Spec {
     Profile(String),
     /// A solver that a configuration file describes.
     Configured(Arc<Profile>),
+    /// A program, by its path or with its version, which is like a solver that is known by its name.
+    Program(String, Arc<Profile>),
     /// A command line that reads SMT-LIB 2 from standard input. Words are split at blanks; quotes
     /// keep blanks together.
     Command(String),
@@ -36,7 +38,7 @@ impl Spec {
             Spec::Backend(name) => name,
             Spec::Profile(name) => name,
             Spec::Configured(profile) => profile.name(),
-            Spec::Command(line) => line,
+            Spec::Program(line, _) | Spec::Command(line) => line,
         }
     }
 }

@@ -52,7 +52,7 @@ impl Catalog {
         let profile = match spec {
             Spec::Builtin | Spec::Backend(_) => return Ok(None),
             Spec::Profile(name) => self.profile(name),
-            Spec::Configured(profile) => Some(profile),
+            Spec::Configured(profile) | Spec::Program(_, profile) => Some(profile),
             Spec::Command(line) => {
                 let Program { path, arguments, .. } = Program::of_command(line)?;
                 let several = arguments.clone();
@@ -67,7 +67,10 @@ impl Catalog {
         };
         let unknown = || Error::Unsupported { what: format!("no solver {} is known", spec.name()) };
         let profile = profile.ok_or_else(unknown)?;
-        let program = Program::of_profile(profile, &Options::default())?.path;
+        let program = match spec {
+            Spec::Program(line, _) => Program::of_kind(line, profile, &Options::default())?.path,
+            _ => Program::of_profile(profile, &Options::default())?.path,
+        };
         let several = profile.arguments.clone();
         // What only a dialogue needs makes some solvers slower.
         let needed = |argument: &String| !["--incremental", "--produce-models"].contains(&argument.as_str());

@@ -107,6 +107,15 @@ fn errors_have_a_place_and_advice() {
     assert!(
         error("[[solver]]\nname = \"x\"\nprogram = \"x\"\narguments = [\"{file}\"]\n").contains("one-shot")
     );
+    for command in ["(echo \\\"sat\\\")", "(get-info :name)", "(check-sat)"] {
+        let answered = error(&format!(
+            "[[solver]]\nname = \"x\"\nprogram = \"x\"\nsetup = [\"(set-logic ALL)\", \"{command}\"]\n"
+        ));
+        assert!(
+            answered.starts_with("etc/hyperplan.toml:2: ") && answered.contains("has an answer"),
+            "{answered}"
+        );
+    }
     let kinds = error("[[solver]]\nname = \"x\"\nprogram = \"x\"\nquantifiers = \"some\"\n");
     assert!(kinds.starts_with("etc/hyperplan.toml:4: ") && kinds.contains("exists-forall"), "{kinds}");
     assert!(error("[[solver]\n").starts_with("etc/hyperplan.toml:1: "));
