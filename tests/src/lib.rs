@@ -2,7 +2,7 @@
 //!
 //! A problem is an explicit table of transitions and a tree of operators ([`model`]), made at random ([`random`]),
 //! printed as a problem file, and decided by enumerating paths ([`brute`]). None of these uses the parser, the typed
-//! problem, the encoder or the checker. [`mod@fuzz`] tries the readers of files with damaged ones.
+//! problem, the encoder or the checker. Of problems over several systems there are only texts ([`mixed`]). [`mod@fuzz`] tries the readers of files with damaged ones.
 
 use std::io::Write;
 use std::time::{Duration, Instant};
@@ -11,6 +11,7 @@ mod beyond;
 pub mod brute;
 mod conformant;
 pub mod fuzz;
+pub mod mixed;
 pub mod model;
 pub mod random;
 pub mod shrink;
