@@ -1,6 +1,7 @@
 //! What solvers write.
 
-use hyperplan_solver::understand_output;
+use hyperplan_smt::Request;
+use hyperplan_solver::{Said, responses, understand_output};
 
 /// Pieces of replies.
 pub(super) const PIECES: &[&str] = &[
@@ -49,10 +50,17 @@ pub(super) const PIECES: &[&str] = &[
     "(let ((a 1)) a)",
 ];
 
-/// Replies are the same, in whatever pieces the output comes.
+/// Replies are the same, in whatever pieces the output comes, and no answer belongs to a command that is no check.
 pub(super) fn body(data: &[u8]) {
     let whole = understand_output(data, data.len().max(1));
     for piece in [1, 7] {
         assert_eq!(understand_output(data, piece), whole, "in pieces of {piece}");
+    }
+    let requests =
+        [Request::Echo("sat".to_owned()), Request::Check, Request::Model, Request::Values, Request::Info];
+    for response in responses(&requests, &String::from_utf8_lossy(data)) {
+        let is_answer = matches!(response.said, Said::Answer(_) | Said::Timeout);
+        let of_check = response.to.is_none_or(|to| requests[to] == Request::Check);
+        assert!(!is_answer || of_check, "{response:?}");
     }
 }

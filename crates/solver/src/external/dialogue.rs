@@ -210,6 +210,12 @@ impl Dialogue {
         Ok(values)
     }
 
+    /// Whether a process that says nothing may be waiting for the end of its input: it has said nothing before, and is not
+    /// known to speak in dialogues.
+    fn may_wait(&self, running: &Running) -> bool {
+        running.checks == 1 && !self.program.profile.tells_version
+    }
+
     /// One check. A process that turns out to have ended since the last one says nothing: `None`.
     fn attempt(
         &mut self,
@@ -223,7 +229,7 @@ impl Dialogue {
         self.size = QuerySize { clauses, variables, bytes: running.bytes, logic: running.logic.clone() };
         // On an error or at the deadline the process is dropped, which kills it.
         let answer = match running.exchange.answer(deadline)? {
-            None if !deadline.cancelled() && running.exchange.answers_at_end() => {
+            None if !deadline.cancelled() && self.may_wait(&running) && running.exchange.answers_at_end() => {
                 return Ok(Answer::Unknown(Unknown::WaitsForEnd));
             }
             None => return Ok(Answer::Unknown(deadline.reason())),
