@@ -255,8 +255,7 @@ fn a_solver_that_answers_at_the_end_of_its_input() {
     let fake = Fake::new(
         "cat > \"$TMPDIR/query\"; grep -q '^(check-sat)' \"$TMPDIR/query\" && echo unsat; rm \"$TMPDIR/query\"",
     );
-    fs::write(project.path().join("hyperplan.toml"), entry("batch", &fake) + "incremental = false\n")
-        .expect("ours");
+    configure(&project, &user, &(entry("batch", &fake) + "incremental = false\n"));
     for quantifiers in ["cegis", "expand", "keep"] {
         let run = solve_in(project.path(), user.path(), &["--solver", "batch", "--quantifiers", quantifiers]);
         assert_eq!(run.status, 1, "{}", run.stderr);
