@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Plants the faults of scripts/faults.toml, one at a time, and expects the tests to catch each.
 
-Works on a copy of the tree in target/planted-faults, which stays for the next time. A fault is found by its function, so
+Works on a copy of the tree in target/planted-faults, which stays for the next time, and builds it there: to cargo, crates of
+equal paths within their workspaces are one, and it would take one's for the other's. A fault is found by its function, so
 that code may move: one that applies no more, or in two places, is an error. Ends with 1 if a fault was missed.
 """
 
@@ -122,7 +123,7 @@ def refresh() -> None:
 
 def run(words, patience: int, name: str = "the tree") -> tuple[bool, str]:
     """Whether a test passes, and what it says."""
-    environment = {"CARGO_TARGET_DIR": str(ROOT / "target"), **os.environ, "RUST_BACKTRACE": "0",
+    environment = {**os.environ, "CARGO_TARGET_DIR": str(COPY.parent / "build"), "RUST_BACKTRACE": "0",
                    "HYPERPLAN_SHRINK_SECONDS": "0"}
     options = {"cwd": COPY, "env": environment, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
     own = words.index("--") if "--" in words else len(words)

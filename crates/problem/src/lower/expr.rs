@@ -189,6 +189,8 @@ pub(crate) fn real<C: Context>(cx: &mut C, e: &ast::Expr) -> Option<Expr<C::Leaf
 }
 
 /// Says that something of another type was expected.
+#[cold]
+#[inline(never)]
 pub(crate) fn mismatch<C: Context, T>(
     cx: &mut C,
     found: &Typed<C::Leaf>,
@@ -415,8 +417,16 @@ fn minus<L>(number: Number<L>) -> Option<Number<L>> {
 
 #[inline(never)]
 fn sum<C: Context>(cx: &mut C, terms: &[(bool, ast::Expr)], span: Span) -> Option<Typed<C::Leaf>> {
-    let parts: Vec<_> = terms.iter().map(|(minus, term)| Some((*minus, numeric(cx, term)?))).collect();
-    let parts = parts.into_iter().collect::<Option<Vec<_>>>()?;
+    // A loop, which takes less of the stack than a chain of iterators: sums may be nested as deeply as anything.
+    let mut parts = Vec::with_capacity(terms.len());
+    let mut complete = true;
+    for (minus, term) in terms {
+        match numeric(cx, term) {
+            Some(number) => parts.push((*minus, number)),
+            None => complete = false,
+        }
+    }
+    let parts = complete.then_some(parts)?;
     added(parts).or_else(|| overflow(cx, span)).map(Number::typed)
 }
 
@@ -512,21 +522,31 @@ fn choice<C: Context>(
     hint: Option<&EnumType>,
 ) -> Option<Typed<C::Leaf>> {
     let c = truth(cx, condition);
-    let (c, (a, b)) = c.zip(operands(cx, then, otherwise, hint))?;
-    Some(match (a, b) {
+    let cases = operands(cx, then, otherwise, hint);
+    chosen(cx, c?, cases?, then.span.to(otherwise.span))
+}
+
+/// Not a part of [`choice`], to keep its frame small.
+#[inline(never)]
+fn chosen<C: Context>(
+    cx: &mut C,
+    c: Expr<C::Leaf>,
+    cases: Pair<C::Leaf>,
+    span: Span,
+) -> Option<Typed<C::Leaf>> {
+    Some(match cases {
         (Typed::Bool(a), Typed::Bool(b)) => Typed::Bool(typed::choice(c, a, b)),
         (Typed::Int(a, ab), Typed::Int(b, bb)) => {
             Typed::Int(typed::choice(c, a, b), ab.zip(bb).map(|(a, b)| a.hull(b)))
         }
         (a @ (Typed::Int(..) | Typed::Real(_)), b @ (Typed::Int(..) | Typed::Real(_))) => {
-            let span = then.span.to(otherwise.span);
             let (a, b) = as_real(a).zip(as_real(b)).or_else(|| overflow(cx, span))?;
             Typed::Real(typed::choice(c, a, b))
         }
         (Typed::Enum(a, t), Typed::Enum(b, u)) if t == u => Typed::Enum(typed::choice(c, a, b), t),
         (a, b) => {
             let message = format!("one case is {}, the other {}", a.describe(), b.describe());
-            return cx.error(Diagnostic::error("type-mismatch", then.span.to(otherwise.span), message));
+            return cx.error(Diagnostic::error("type-mismatch", span, message));
         }
     })
 }

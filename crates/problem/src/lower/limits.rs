@@ -31,29 +31,33 @@ impl Limits {
     /// Starts a node; says `false`, once with a message, where a limit is reached. Pair with [`Limits::leave`]
     /// where it said `true`.
     pub(crate) fn enter(&mut self, span: Span, diagnostics: &mut Diagnostics) -> bool {
-        if diagnostics.are_enough() {
-            if !self.reported {
-                self.reported = true;
-                let message = "so many errors that what follows is not looked at";
-                diagnostics.push(Diagnostic::error("too-many-errors", span, message));
-            }
-            return false;
-        }
-        if self.depth < MAX_DEPTH && self.nodes < MAX_NODES {
+        let allowed = self.depth < MAX_DEPTH && self.nodes < MAX_NODES && !diagnostics.are_enough();
+        if allowed {
             self.depth += 1;
             self.nodes += 1;
-            return true;
+        } else {
+            self.refuse(span, diagnostics);
         }
-        if !self.reported {
-            self.reported = true;
-            let what = if self.depth >= MAX_DEPTH {
-                format!("nested more than {MAX_DEPTH} levels deep once definitions are expanded")
-            } else {
-                format!("more than {MAX_NODES} parts once definitions are expanded")
-            };
-            diagnostics.push(Diagnostic::error("too-large", span, what));
+        allowed
+    }
+
+    /// Not a part of [`Limits::enter`], as each level of the recursion would have room for the message on its stack.
+    #[cold]
+    #[inline(never)]
+    fn refuse(&mut self, span: Span, diagnostics: &mut Diagnostics) {
+        if std::mem::replace(&mut self.reported, true) {
+            return;
         }
-        false
+        diagnostics.push(if diagnostics.are_enough() {
+            let what = "so many errors that what follows is not looked at";
+            Diagnostic::error("too-many-errors", span, what)
+        } else if self.depth >= MAX_DEPTH {
+            let what = format!("nested more than {MAX_DEPTH} levels deep once definitions are expanded");
+            Diagnostic::error("too-large", span, what)
+        } else {
+            let what = format!("more than {MAX_NODES} parts once definitions are expanded");
+            Diagnostic::error("too-large", span, what)
+        });
     }
 
     /// Ends a node.
