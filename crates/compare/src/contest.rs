@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use hyperplan_problem::answer::ReasonCode;
 
-use crate::{Answer, Record, Status};
+use crate::{Answer, Record, RunStatus};
 use hyperplan_outlet::one_line;
 
 /// What takes part in a comparison: a solver together with everything that was chosen for it.
@@ -26,7 +26,7 @@ pub struct Contestant<'a> {
 
 /// What was asked: a file with its constants. Files that changed in between are different instances.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Instance<'a> {
+pub struct Row<'a> {
     /// Its folder.
     pub family: &'a str,
     /// The file, and for a problem file the objective.
@@ -56,7 +56,7 @@ pub struct Contest<'a> {
     /// The contestants, in order.
     pub contestants: Vec<Contestant<'a>>,
     /// The instances, by family and name.
-    pub instances: Vec<Instance<'a>>,
+    pub instances: Vec<Row<'a>>,
     /// By instance and contestant; `None` where nothing was run.
     pub cells: Vec<Vec<Option<Cell<'a>>>>,
     /// Of each instance, the answer that is known to be right.
@@ -153,8 +153,8 @@ impl<'a> Cell<'a> {
     fn new(mut runs: Vec<&'a Record>, truth: Option<Answer>) -> Option<Self> {
         runs.sort_by_key(|run| (run.seed, run.repetition));
         let mut order = runs.clone();
-        if order.iter().any(|run| run.status != Status::Unsupported) {
-            order.retain(|run| run.status != Status::Unsupported);
+        if order.iter().any(|run| run.status != RunStatus::Unsupported) {
+            order.retain(|run| run.status != RunStatus::Unsupported);
         }
         order.sort_by(|a, b| {
             let key = |run: &Record| (answer(run).is_none(), run.status);
@@ -177,7 +177,7 @@ impl<'a> Cell<'a> {
 
     /// Whether it counts: what a contestant does not support is not held against it.
     pub fn counts(&self) -> bool {
-        self.median.status != Status::Unsupported
+        self.median.status != RunStatus::Unsupported
     }
 }
 
@@ -220,9 +220,13 @@ fn is_beginning(version: &str, other: &str) -> bool {
 /// What a run says, whether or not it is right.
 pub(crate) fn answer(run: &Record) -> Option<Answer> {
     match run.status {
-        Status::Sat => Some(Answer::Sat),
-        Status::Unsat => Some(Answer::Unsat),
-        Status::Unknown | Status::Timeout | Status::Memout | Status::Error | Status::Unsupported => None,
+        RunStatus::Sat => Some(Answer::Sat),
+        RunStatus::Unsat => Some(Answer::Unsat),
+        RunStatus::Unknown
+        | RunStatus::Timeout
+        | RunStatus::Memout
+        | RunStatus::Error
+        | RunStatus::Unsupported => None,
     }
 }
 
@@ -284,10 +288,10 @@ fn disputed(runs: &[&Record]) -> bool {
     said(Answer::Sat) && said(Answer::Unsat)
 }
 
-fn instance(record: &Record) -> Instance<'_> {
+fn instance(record: &Record) -> Row<'_> {
     let set = &record.set;
     let words: Vec<&str> = [&record.instance].into_iter().chain(set).map(String::as_str).collect();
-    Instance {
+    Row {
         family: &record.family,
         name: &record.instance,
         set,
@@ -297,7 +301,7 @@ fn instance(record: &Record) -> Instance<'_> {
 }
 
 /// Tells instances of one name apart.
-fn label_instances(instances: &mut [Instance<'_>]) {
+fn label_instances(instances: &mut [Row<'_>]) {
     let mut labels: BTreeMap<String, usize> = BTreeMap::new();
     for instance in &*instances {
         *labels.entry(instance.label.clone()).or_default() += 1;

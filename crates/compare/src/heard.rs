@@ -4,13 +4,13 @@ use hyperplan_smt::Request;
 use hyperplan_solver::{Said, responses};
 
 use crate::query::Query;
-use crate::record::Status;
+use crate::record::RunStatus;
 
 /// The replies of a solver, as far as they matter.
 #[derive(Debug, Default)]
 pub(crate) struct Heard {
     /// The answers to its checks, in order.
-    pub(crate) answers: Vec<Status>,
+    pub(crate) answers: Vec<RunStatus>,
     /// An answer beyond these that differs from the last of them.
     pub(crate) contradicts: bool,
     /// The first error before the last check was answered: what was answered then is something else than was asked.
@@ -28,10 +28,10 @@ impl Heard {
         for response in responses(&query.requests, output) {
             let all = !query.checks.is_empty() && heard.answers.len() == query.checks.len();
             let answer = match response.said {
-                Said::Answer(Some(true)) => Status::Sat,
-                Said::Answer(Some(false)) => Status::Unsat,
-                Said::Answer(None) => Status::Unknown,
-                Said::Timeout => Status::Timeout,
+                Said::Answer(Some(true)) => RunStatus::Sat,
+                Said::Answer(Some(false)) => RunStatus::Unsat,
+                Said::Answer(None) => RunStatus::Unknown,
+                Said::Timeout => RunStatus::Timeout,
                 Said::Error(_) if !all => {
                     heard.early.get_or_insert(response.text);
                     continue;

@@ -8,7 +8,7 @@ use std::path::Path;
 use askama::Template;
 use serde::Serialize;
 
-use crate::contest::{Cell, Contest, Contestant, Instance, is_certified};
+use crate::contest::{Cell, Contest, Contestant, Row, is_certified};
 use crate::judge::{Fault, Finding, Judgement};
 use crate::links::Links;
 use crate::plot::{self, KINDS, Kind, Scatter};
@@ -189,7 +189,7 @@ fn scores_grid(sheet: &Sheet, id: &str, caption: &str) -> Grid {
 /// The instances with what each contestant made of them, best contestant first.
 fn instances(contest: &Contest<'_>, order: &[usize], links: &Links<'_>) -> Grid {
     let names = order.iter().map(|&c| contest.contestants[c].label.clone());
-    let row = |(i, instance): (usize, &Instance<'_>)| {
+    let row = |(i, instance): (usize, &Row<'_>)| {
         let disputed = contest.disputed[i];
         let mark = if disputed { "✗ " } else { "" };
         let answer =

@@ -132,7 +132,7 @@ pub(crate) fn judge_contest(contest: &Contest<'_>) -> Judgement {
                 cell.runs.iter().map(|record| Run { who: contestant.label.as_str(), record })
             })
             .collect();
-        let instance = Instance { label: &contest.instances[i].label, truth: contest.truth[i], runs: &runs };
+        let instance = Case { label: &contest.instances[i].label, truth: contest.truth[i], runs: &runs };
         findings.extend(instance.answers());
         findings.extend(instance.witnesses(Kind::WrongModel, is_wrong_model, Fault::Solver));
         findings.extend(instance.witnesses(Kind::RefutedStrategy, is_refuted_strategy, Fault::Ours));
@@ -145,13 +145,13 @@ struct Run<'a> {
     record: &'a Record,
 }
 
-struct Instance<'a> {
+struct Case<'a> {
     label: &'a str,
     truth: Option<Answer>,
     runs: &'a [Run<'a>],
 }
 
-impl<'a> Instance<'a> {
+impl<'a> Case<'a> {
     fn finding(&self, kind: Kind, fault: Fault, claims: Vec<Claim>) -> Finding {
         Finding { kind, fault, instance: self.label.to_owned(), truth: self.truth, claims }
     }

@@ -32,7 +32,7 @@ pub use judge::{Claim, Fault, Finding, Judgement, Kind, judge};
 pub use log::{Log, LogError, Past};
 pub use pool::{Event, Setting, prepare, run_all};
 pub use query::Query;
-pub use record::{Answer, Limit, Record, Status, checked};
+pub use record::{Answer, Limit, Record, RunStatus, checked};
 pub use supervise::supervise;
 
 use contest::Contest;

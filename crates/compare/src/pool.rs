@@ -19,7 +19,7 @@ use crate::heard::Heard;
 use crate::plan::{Kind, Run};
 use crate::query::Query;
 use crate::reading::{self, Reading};
-use crate::record::{Record, Status};
+use crate::record::{Record, RunStatus};
 use crate::supervise::{Job, Measured};
 use crate::witness;
 
@@ -324,7 +324,7 @@ fn record(run: &Run, setting: &Setting, measured: &Measured, folders: &Folders) 
     };
     let message = match (reading.status, reading.message) {
         // Which time it was; that it was the time says no more than the status.
-        (Status::Timeout, message) => {
+        (RunStatus::Timeout, message) => {
             let more = reading.reason_code != Some(ReasonCode::Timeout);
             message.filter(|_| more).or(over.map(str::to_owned))
         }

@@ -5,7 +5,7 @@ use serde::de::DeserializeOwned;
 
 use crate::heard::Heard;
 use crate::query::Query;
-use crate::record::{Answer, Status};
+use crate::record::{Answer, RunStatus};
 use crate::supervise::{Exceeded, Measured};
 
 /// The longest message that is remembered.
@@ -14,7 +14,7 @@ const MESSAGE: usize = 500;
 /// What a run came to.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Reading {
-    pub(crate) status: Status,
+    pub(crate) status: RunStatus,
     pub(crate) expected: Option<Answer>,
     pub(crate) verified: Option<String>,
     pub(crate) version: Option<String>,
@@ -32,7 +32,7 @@ pub(crate) struct Reading {
 }
 
 impl Reading {
-    pub(crate) fn new(status: Status, message: Option<String>) -> Reading {
+    pub(crate) fn new(status: RunStatus, message: Option<String>) -> Reading {
         Reading { status, message, ..Reading::default() }
     }
 
@@ -55,26 +55,26 @@ pub(crate) fn of_problem(measured: &Measured, over: bool) -> Reading {
     let code = said.as_ref().map_or_else(|| Some(failed.as_ref()?.reason_code), |said| said.reason_code);
     let status = limits(measured, over).or_else(|| {
         Some(match (measured.exit_code?, said.as_ref()?.verdict) {
-            (0, Verdict::Realizable) => Status::Sat,
-            (1, Verdict::Unrealizable) => Status::Unsat,
+            (0, Verdict::Realizable) => RunStatus::Sat,
+            (1, Verdict::Unrealizable) => RunStatus::Unsat,
             (3, Verdict::Unknown) => match code {
-                Some(ReasonCode::Timeout) => Status::Timeout,
-                Some(ReasonCode::OutOfMemory) => Status::Memout,
-                _ => Status::Unknown,
+                Some(ReasonCode::Timeout) => RunStatus::Timeout,
+                Some(ReasonCode::OutOfMemory) => RunStatus::Memout,
+                _ => RunStatus::Unknown,
             },
-            _ => Status::Error,
+            _ => RunStatus::Error,
         })
     });
     let status = status.unwrap_or(match measured.exit_code {
-        Some(2) => Status::Unsupported,
-        Some(3) => Status::Unknown,
-        _ => Status::Error,
+        Some(2) => RunStatus::Unsupported,
+        Some(3) => RunStatus::Unknown,
+        _ => RunStatus::Error,
     });
     let errors = last_error(&measured.stderr);
     let reason = said.as_ref().and_then(|said| said.reason.clone());
     let message = match status {
-        Status::Sat | Status::Unsat => None,
-        Status::Error => errors.or(reason).or_else(|| silent(measured)),
+        RunStatus::Sat | RunStatus::Unsat => None,
+        RunStatus::Error => errors.or(reason).or_else(|| silent(measured)),
         _ => reason.or(errors),
     };
     let refuted = measured.exit_code == Some(5) || code == Some(ReasonCode::WrongModel);
@@ -123,29 +123,29 @@ pub(crate) fn of_query(measured: &Measured, query: &Query, heard: &Heard, over: 
     let all = format!("{}\n{}", early.as_deref().unwrap_or_default(), measured.stderr).to_lowercase();
     let Some(&status) = answers.first().filter(|_| early.is_none()) else {
         let status = match () {
-            () if answers.contains(&Status::Timeout) => Status::Timeout,
+            () if answers.contains(&RunStatus::Timeout) => RunStatus::Timeout,
             () if ["out of memory", "bad_alloc", "memory exhausted"].iter().any(|w| all.contains(w)) => {
-                Status::Memout
+                RunStatus::Memout
             }
-            () if ["unsupported", "not supported"].iter().any(|w| all.contains(w)) => Status::Unsupported,
-            () => Status::Error,
+            () if ["unsupported", "not supported"].iter().any(|w| all.contains(w)) => RunStatus::Unsupported,
+            () => RunStatus::Error,
         };
         return trouble(status, early.clone());
     };
     if measured.signal.is_some() {
-        return trouble(Status::Error, None);
+        return trouble(RunStatus::Error, None);
     }
     if heard.contradicts {
-        return trouble(Status::Error, Some("it gave several answers to one check".to_owned()));
+        return trouble(RunStatus::Error, Some("it gave several answers to one check".to_owned()));
     }
-    let late = heard.late.as_ref().filter(|_| status == Status::Sat);
+    let late = heard.late.as_ref().filter(|_| status == RunStatus::Sat);
     let message =
         late.map(|error| shortened(format!("after its answer the solver reported an error: {error}")));
     Reading { expected, ..Reading::new(status, message) }
 }
 
 /// Several checks in one file are not supported, but what contradicts a known status is told of.
-fn of_several(answers: &[Status], query: &Query, failed: bool) -> Reading {
+fn of_several(answers: &[RunStatus], query: &Query, failed: bool) -> Reading {
     let checks = query.checks.len();
     let mut pairs = answers.iter().copied().zip(query.checks.iter().copied()).zip(1..);
     let wrong = pairs.find(|((said, known), _)| known.is_some_and(|known| contradicts(*said, known)));
@@ -154,23 +154,23 @@ fn of_several(answers: &[Status], query: &Query, failed: bool) -> Reading {
             Reading { expected, ..Reading::new(status, Some(format!("check {check} of {checks}"))) }
         }
         None => Reading::new(
-            Status::Unsupported,
+            RunStatus::Unsupported,
             Some(format!("{checks} checks in one file; only answers against a known status count")),
         ),
     }
 }
 
-fn contradicts(said: Status, known: Answer) -> bool {
-    matches!((said, known), (Status::Sat, Answer::Unsat) | (Status::Unsat, Answer::Sat))
+fn contradicts(said: RunStatus, known: Answer) -> bool {
+    matches!((said, known), (RunStatus::Sat, Answer::Unsat) | (RunStatus::Unsat, Answer::Sat))
 }
 
 /// Whether a limit decided; what was said after the time was over does not count.
-fn limits(measured: &Measured, over: bool) -> Option<Status> {
+fn limits(measured: &Measured, over: bool) -> Option<RunStatus> {
     match measured.exceeded {
-        Some(Exceeded::Time) => Some(Status::Timeout),
-        Some(Exceeded::Memory) => Some(Status::Memout),
+        Some(Exceeded::Time) => Some(RunStatus::Timeout),
+        Some(Exceeded::Memory) => Some(RunStatus::Memout),
         // Failures stay failures, whenever they come.
-        None if over && !matches!(measured.exit_code, Some(4..) | None) => Some(Status::Timeout),
+        None if over && !matches!(measured.exit_code, Some(4..) | None) => Some(RunStatus::Timeout),
         None => None,
     }
 }

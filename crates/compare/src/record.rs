@@ -11,7 +11,7 @@ use hyperplan_outlet::one_line;
 /// What a run ended with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Status {
+pub enum RunStatus {
     /// Satisfiable; of an objective: realizable.
     Sat,
     /// Unsatisfiable; of an objective: unrealizable.
@@ -45,7 +45,7 @@ impl fmt::Display for Answer {
     }
 }
 
-impl fmt::Display for Status {
+impl fmt::Display for RunStatus {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.serialize(f)
     }
@@ -92,7 +92,7 @@ pub struct Record {
     /// Which of the repetitions, from 0.
     pub repetition: u32,
     /// How it ended.
-    pub status: Status,
+    pub status: RunStatus,
     /// The right answer, where it is known.
     pub expected: Option<Answer>,
     /// How the witness was checked (`by-search`, `by-solver`); of a query, `model`: it asked for the model, which was evaluated.
@@ -173,7 +173,7 @@ pub(crate) mod tests {
             options: String::new(),
             seed: 0,
             repetition: 0,
-            status: Status::Sat,
+            status: RunStatus::Sat,
             expected: None,
             verified: None,
             wall_s: 0.5,

@@ -10,7 +10,7 @@ use std::cmp::Ordering;
 use serde::Serialize;
 
 use crate::contest::{Cell, Contest, allowed};
-use crate::{Answer, Status};
+use crate::{Answer, RunStatus};
 
 /// SMT-COMP's parallel score: fewer errors, then more correct answers, then less wall time, then less CPU time, both of
 /// the instances that were solved.
@@ -179,10 +179,12 @@ fn score<'a: 'b, 'b>(cells: impl Iterator<Item = &'b Cell<'a>>, longest: f64) ->
             score.par2 += 2.0 * allowed(run).unwrap_or(longest);
             match run.status {
                 _ if cell.wrong => score.wrong += 1,
-                Status::Unknown => score.unknown += 1,
-                Status::Timeout => score.timeout += 1,
-                Status::Memout => score.memout += 1,
-                Status::Sat | Status::Unsat | Status::Error | Status::Unsupported => score.error += 1,
+                RunStatus::Unknown => score.unknown += 1,
+                RunStatus::Timeout => score.timeout += 1,
+                RunStatus::Memout => score.memout += 1,
+                RunStatus::Sat | RunStatus::Unsat | RunStatus::Error | RunStatus::Unsupported => {
+                    score.error += 1
+                }
             }
         }
         // The virtual limit: a solver should not gain from using several processors.

@@ -8,7 +8,7 @@ use hyperplan_solver::{PrintedModel, PrintedModelError};
 use crate::heard::Heard;
 use crate::query::Query;
 use crate::reading::Reading;
-use crate::record::Status;
+use crate::record::RunStatus;
 use crate::supervise::Measured;
 
 /// What became of a model.
@@ -30,7 +30,7 @@ pub(crate) fn checked(
     file: &str,
     measured: &Measured,
 ) -> Reading {
-    let request = query.of_model().filter(|_| reading.status == Status::Sat && query.checks.len() == 1);
+    let request = query.of_model().filter(|_| reading.status == RunStatus::Sat && query.checks.len() == 1);
     let Some(request) = request else { return reading };
     let (verified, message) = match worth(request, query, heard, file, measured) {
         Worth::Holds => (Some("model"), None),
@@ -170,7 +170,7 @@ mod tests {
     fn what_was_cut_off_is_not_checked() {
         let mut stdout = "sat\n((x 2))".to_owned();
         let of = |stdout: String| {
-            let reading = Reading::new(Status::Sat, None);
+            let reading = Reading::new(RunStatus::Sat, None);
             let query = Query::scan("(check-sat)(get-value (x))");
             let heard = Heard::new(&query, &stdout);
             checked(reading, &query, &heard, "no-such-file", &Measured { stdout, ..Measured::default() })
@@ -179,7 +179,7 @@ mod tests {
         assert!(missing.message.is_some_and(|message| message.contains("no-such-file: ")));
         stdout.extend(std::iter::repeat_n(' ', 64 << 20));
         let cut = of(stdout);
-        assert_eq!((cut.status, cut.verified), (Status::Sat, None));
+        assert_eq!((cut.status, cut.verified), (RunStatus::Sat, None));
         assert_eq!(cut.message.as_deref(), Some("model not checked: it is too long"));
     }
 }

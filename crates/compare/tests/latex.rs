@@ -9,7 +9,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use hyperplan_compare::report::write_all;
-use hyperplan_compare::{Record, Status};
+use hyperplan_compare::{Record, RunStatus};
 use sample::{run, sample};
 
 fn has_latex() -> bool {
@@ -76,7 +76,7 @@ fn whatever_names_have() {
     for (i, name) in NASTY.iter().enumerate() {
         for (solver, quantifiers) in [("z3", "auto"), ("./solver_x --a=%,#", NASTY[i % 4]), ("é Ω", "keep")]
         {
-            let mut record = run(solver, name, Status::Sat, 1.0);
+            let mut record = run(solver, name, RunStatus::Sat, 1.0);
             record.family = name.chars().rev().collect();
             record.quantifiers = Some(quantifiers.to_owned());
             record.set = vec![(*name).to_owned()];
@@ -93,6 +93,6 @@ fn long_ones() {
         return;
     }
     let records: Vec<Record> =
-        (0..150).map(|i| run("z3", &format!("specs/{i}_%.hp#o"), Status::Sat, f64::from(i))).collect();
+        (0..150).map(|i| run("z3", &format!("specs/{i}_%.hp#o"), RunStatus::Sat, f64::from(i))).collect();
     set(&records);
 }

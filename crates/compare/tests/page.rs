@@ -186,7 +186,7 @@ fn heads_are_on_every_page(paper: &Path) {
 
 /// The sample again, and many more instances on which times spread.
 fn large() -> Vec<Record> {
-    use hyperplan_compare::Status::{Sat, Timeout, Unsat};
+    use hyperplan_compare::RunStatus::{Sat, Timeout, Unsat};
     let mut records = sample();
     for i in 0..60_u32 {
         for (c, (solver, quantifiers)) in

@@ -10,7 +10,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use hyperplan_compare::{Record, Status};
+use hyperplan_compare::{Record, RunStatus};
 use sample::run;
 
 /// Stands for hyperplan: its report is there already, its exit status in a file.
@@ -69,10 +69,10 @@ fn table_1() {
         run(solver, &format!("specs/case-studies/{name}-10.hp#{name}"), status, wall)
     };
     let records = [
-        case("z3", "iso", Status::Sat, 1.0),
-        case("z3", "iso", Status::Sat, 3.0),
-        case("z3", "iso", Status::Sat, 2.0),
-        case("builtin", "sp", Status::Timeout, 9.0),
+        case("z3", "iso", RunStatus::Sat, 1.0),
+        case("z3", "iso", RunStatus::Sat, 3.0),
+        case("z3", "iso", RunStatus::Sat, 2.0),
+        case("builtin", "sp", RunStatus::Timeout, 9.0),
     ];
     let options = ["--sizes", "10", "--jobs", "2"];
     let (text, status) = script(dir.path(), "table-1.py", &options, &records, 0);
@@ -95,10 +95,11 @@ fn formula_16() {
         quantifiers: Some(quantifiers.to_owned()),
         ..run("z3", "specs/rooms.hp#sp", status, wall)
     };
-    let both = |keep| [how("keep", keep, 6.0), how("auto", Status::Sat, 0.5)];
-    let (text, _) = script(dir.path(), "formula-16.py", &[], &both(Status::Sat), 0);
+    let both = |keep| [how("keep", keep, 6.0), how("auto", RunStatus::Sat, 0.5)];
+    let (text, _) = script(dir.path(), "formula-16.py", &[], &both(RunStatus::Sat), 0);
     assert!(text.contains("| rooms.hp#sp | z3 | 6.000 | 0.500 | 12.0 |\n"), "{text}");
-    let (text, status) = script(dir.path(), "formula-16.py", &["--timeout", "6"], &both(Status::Timeout), 4);
+    let (text, status) =
+        script(dir.path(), "formula-16.py", &["--timeout", "6"], &both(RunStatus::Timeout), 4);
     assert!(text.contains("| rooms.hp#sp | z3 | timeout | 0.500 | > 12 |\n"), "{text}");
     assert_eq!(status, Some(4), "wrong answers are not hidden");
     assert!(called(dir.path()).contains(" --quantifiers keep,auto "));
@@ -113,17 +114,17 @@ fn nightly() {
     let night = |day: &str, records: &[Record], status| {
         script(dir.path(), "nightly.py", &["--day", day], records, status)
     };
-    let before = ["a", "b", "c", "d"].map(|name| run("z3", name, Status::Sat, 1.0));
+    let before = ["a", "b", "c", "d"].map(|name| run("z3", name, RunStatus::Sat, 1.0));
     assert_eq!(night("2026-01-01", &before, 0), ("nothing to compare with\n".to_owned(), Some(0)));
     assert_eq!(
         night("2026-01-02", &before, 0),
         ("0 of 4 runs are worse than on 2026-01-01; 0 are new, 0 gone\n".to_owned(), Some(0))
     );
     let after = [
-        run("z3", "a", Status::Unsat, 1.0),
-        run("z3", "b", Status::Sat, 3.5),
-        run("z3", "c", Status::Sat, 1.9),
-        run("z3", "e", Status::Timeout, 10.0),
+        run("z3", "a", RunStatus::Unsat, 1.0),
+        run("z3", "b", RunStatus::Sat, 3.5),
+        run("z3", "c", RunStatus::Sat, 1.9),
+        run("z3", "e", RunStatus::Timeout, 10.0),
     ];
     let (text, status) = night("2026-01-03", &after, 0);
     let expected = "\

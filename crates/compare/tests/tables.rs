@@ -10,7 +10,7 @@ use hyperplan_compare::contest::Contest;
 use hyperplan_compare::latex::latex;
 use hyperplan_compare::report::write_all;
 use hyperplan_compare::table::{Sheet, sheets};
-use hyperplan_compare::{Record, Status, summary};
+use hyperplan_compare::{Record, RunStatus, summary};
 use sample::{run, sample};
 
 fn golden(name: &str, actual: &str) {
@@ -47,7 +47,7 @@ fn terminal() {
 fn narrow_terminals() {
     let records: Vec<Record> = (0..12)
         .flat_map(|c| (0..5).map(move |i| (c, i)))
-        .map(|(c, i)| run(&format!("solver-{c}"), &format!("specs/{i}.hp#o"), Status::Sat, 1.0))
+        .map(|(c, i)| run(&format!("solver-{c}"), &format!("specs/{i}.hp#o"), RunStatus::Sat, 1.0))
         .collect();
     let longest = |text: &str| {
         let tables = text.split("Order:").next().unwrap_or_default();
@@ -71,7 +71,7 @@ fn narrow_terminals() {
 #[test]
 fn names_that_break_lines() {
     let nasty = "a\nb\u{1b}[31m\r|c";
-    let mut records = [run(nasty, nasty, Status::Sat, 1.0), run("z3", nasty, Status::Unsat, 1.0)];
+    let mut records = [run(nasty, nasty, RunStatus::Sat, 1.0), run("z3", nasty, RunStatus::Unsat, 1.0)];
     for (record, family) in records.iter_mut().zip([nasty, "b\nc"]) {
         record.set = vec![nasty.to_owned()];
         record.family = family.to_owned();
@@ -109,7 +109,7 @@ fn text_is_no_formula() {
             .collect::<BTreeMap<_, _>>()
     };
     for begin in ["=", "+", "-", "@", "＝", "＋", "－", "＠", "\t=", "\r=", "\n=", "'="] {
-        let mut record = run(&format!("{begin}solver"), &format!("{begin}1"), Status::Error, 1.0);
+        let mut record = run(&format!("{begin}solver"), &format!("{begin}1"), RunStatus::Error, 1.0);
         record.family = format!("{begin}cmd|' /C calc'!A0");
         record.message = Some(format!("{begin}2"));
         record.version = Some(format!("{begin}3"));
@@ -135,9 +135,10 @@ fn text_is_no_formula() {
 /// Nothing to show is shown.
 #[test]
 fn odd_ones() {
-    let none = [run("z3", "a", Status::Timeout, 0.0)];
-    let unsupported = [run("z3", "a", Status::Unsupported, 0.0)];
-    let mut infinite = [run("z3", "a", Status::Sat, f64::NAN), run("cvc5", "a", Status::Sat, f64::INFINITY)];
+    let none = [run("z3", "a", RunStatus::Timeout, 0.0)];
+    let unsupported = [run("z3", "a", RunStatus::Unsupported, 0.0)];
+    let mut infinite =
+        [run("z3", "a", RunStatus::Sat, f64::NAN), run("cvc5", "a", RunStatus::Sat, f64::INFINITY)];
     infinite[0].limit.wall_s = Some(f64::NAN);
     for records in [&[] as &[Record], &none, &unsupported, &infinite] {
         let dir = tempfile::tempdir().expect("a temporary folder");
@@ -149,12 +150,12 @@ fn odd_ones() {
 /// Contestants that count on nothing have no place in a family, nor do they push others back.
 #[test]
 fn families_without_what_does_not_count() {
-    let mut wrong = run("z3", "a/x", Status::Unsat, 1.0);
+    let mut wrong = run("z3", "a/x", RunStatus::Unsat, 1.0);
     wrong.family = "a".to_owned();
     wrong.expected = Some(hyperplan_compare::Answer::Sat);
     let other = |solver: &str, status| Record { family: "b".to_owned(), ..run(solver, "b/x", status, 1.0) };
-    let absent = Record { family: "a".to_owned(), ..run("builtin", "a/x", Status::Unsupported, 0.0) };
-    let records = [wrong, absent, other("z3", Status::Sat), other("builtin", Status::Sat)];
+    let absent = Record { family: "a".to_owned(), ..run("builtin", "a/x", RunStatus::Unsupported, 0.0) };
+    let records = [wrong, absent, other("z3", RunStatus::Sat), other("builtin", RunStatus::Sat)];
     let sheets = sheets(&Contest::new(&records));
     let places = |i: usize| -> Vec<String> {
         sheets[i].rows.iter().map(|row| format!("{} {}", row[0], row[1])).collect()
@@ -181,7 +182,7 @@ fn plots_of_an_earlier_report_go() {
         names.filter(|name| name.starts_with("scatter") || name.starts_with('.')).collect()
     };
     fs::write(dir.path().join("scatter.svg"), "somebody's").expect("ours");
-    let of = ["z3", "cvc5"].map(|solver| run(solver, "a", Status::Sat, 1.0));
+    let of = ["z3", "cvc5"].map(|solver| run(solver, "a", RunStatus::Sat, 1.0));
     write_all(&of, dir.path()).expect("a folder that can be written");
     assert_eq!(names().len(), 2);
     write_all(&of[..1], dir.path()).expect("a folder that can be written");

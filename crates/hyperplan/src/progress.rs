@@ -1,7 +1,7 @@
 //! How far a comparison is: a bar on a terminal, a line for each run elsewhere.
 
 use crate::output::Output;
-use hyperplan_compare::{Record, Status, checked};
+use hyperplan_compare::{Record, RunStatus, checked};
 use hyperplan_outlet::one_line;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{self, IsTerminal as _};
@@ -42,7 +42,7 @@ impl<'a> Progress<'a> {
     pub(crate) fn finished(&mut self, label: &str, record: &Record) {
         self.done += 1;
         let mut line = format!("{label}: {} {:.2} s", record.status, record.wall_s);
-        if let (Status::Error, Some(message), false) = (record.status, &record.message, self.verbose) {
+        if let (RunStatus::Error, Some(message), false) = (record.status, &record.message, self.verbose) {
             line.push_str(&format!(" ({})", one_line(message)));
         }
         let below = if self.verbose { details(record) } else { String::new() };
@@ -54,7 +54,7 @@ impl<'a> Progress<'a> {
             }
             Some(bar) => {
                 // What went wrong stays to be read.
-                if self.verbose || record.status == Status::Error {
+                if self.verbose || record.status == RunStatus::Error {
                     bar.println(line + &below);
                 }
                 bar.inc(1);

@@ -195,59 +195,18 @@ fn words_of_solvers() {
         let entry = format!("[[solver]]\nname = \"fake\"\nprogram = \"{}\"\n", fake.program().display());
         fs::write(user.path().join("hyperplan/hyperplan.toml"), entry).expect("ours");
         let out = user.path().join("out");
-        for arguments in [
-            &["solvers"][..],
-            &["solvers", "--format", "json"],
-            &["solve", "rooms.hp", "--objective", "sp", "--quantifiers", "expand", "--solver", "fake"],
-            &[
-                "solve",
-                "rooms.hp",
-                "--objective",
-                "sp",
-                "--quantifiers",
-                "expand",
-                "--solver",
-                "fake",
-                "--format",
-                "json",
-            ],
-            &[
-                "solve",
-                "rooms.hp",
-                "--objective",
-                "sp",
-                "--quantifiers",
-                "expand",
-                "--solver",
-                "fake,builtin",
-            ],
-            &[
-                "solve",
-                "rooms.hp",
-                "--objective",
-                "sp",
-                "--quantifiers",
-                "expand",
-                "--cross-check",
-                "fake",
-                "--set",
-                "T=1",
-            ],
-            &[
-                "compare",
-                "rooms.hp",
-                "--objective",
-                "sp",
-                "--quantifiers",
-                "expand",
-                "--solver",
-                "fake",
-                "-v",
-                "--out",
-                text(&out),
-            ],
+        for line in [
+            "solvers",
+            "solvers --format json",
+            "solve rooms.hp --objective sp --solver fake",
+            "solve rooms.hp --objective sp --solver fake --format json",
+            "solve rooms.hp --objective sp --solver fake,builtin",
+            "solve rooms.hp --objective sp --cross-check fake --set T=1",
+            "compare rooms.hp --objective sp --solver fake -v --out",
         ] {
-            let mut command = command(arguments);
+            let to = line.ends_with("--out").then_some(text(&out));
+            let arguments: Vec<&str> = line.split(' ').chain(to).collect();
+            let mut command = command(&arguments);
             command.env("XDG_CONFIG_HOME", user.path());
             let run = Run::new(command.output().expect("the command was built for this test"));
             is_quiet(&format!("{arguments:?} with {body:?}"), &run);

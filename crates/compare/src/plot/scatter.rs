@@ -7,7 +7,7 @@ use svg::node::element::{Group, Title};
 use super::{Area, Axis, COLORS, FAINT, INK, MARKERS, document, line, marker, round, short, text};
 use crate::contest::{Cell, Contest};
 use crate::table::seconds;
-use crate::{Answer, Status};
+use crate::{Answer, RunStatus};
 
 const AREA: Area = Area { left: 64.0, top: 40.0, width: 372.0, height: 372.0 };
 /// How far beyond the limit those lie that failed otherwise.
@@ -47,7 +47,7 @@ impl Scatter {
         let cell = cell.filter(|cell| cell.counts())?;
         Some(round(if cell.solved().is_some() {
             self.axis.at(cell.median.wall_s)
-        } else if cell.median.status == Status::Timeout && !cell.wrong {
+        } else if cell.median.status == RunStatus::Timeout && !cell.wrong {
             self.axis.length
         } else {
             self.axis.length + BEYOND

@@ -1,10 +1,10 @@
 //! Hand-made records.
 
-use hyperplan_compare::{Answer, Limit, Record, Status};
+use hyperplan_compare::{Answer, Limit, Record, RunStatus};
 use hyperplan_problem::answer::ReasonCode;
 
 /// A run that ended with a status after some seconds, under a limit of 10.
-pub(crate) fn run(solver: &str, instance: &str, status: Status, wall_s: f64) -> Record {
+pub(crate) fn run(solver: &str, instance: &str, status: RunStatus, wall_s: f64) -> Record {
     Record {
         instance: instance.to_owned(),
         family: "specs".to_owned(),
@@ -21,17 +21,17 @@ pub(crate) fn run(solver: &str, instance: &str, status: Status, wall_s: f64) -> 
         repetition: 0,
         status,
         expected: None,
-        verified: (status == Status::Sat).then(|| "by-search".to_owned()),
+        verified: (status == RunStatus::Sat).then(|| "by-search".to_owned()),
         wall_s,
         cpu_s: wall_s,
         memory_mib: 12.5,
         limit: Limit { wall_s: Some(10.0), cpu_s: None, memory_mib: Some(1024) },
         exit_code: Some(match status {
-            Status::Sat => 0,
-            Status::Unsat => 1,
-            Status::Unsupported => 2,
-            Status::Unknown | Status::Timeout | Status::Memout => 3,
-            Status::Error => 4,
+            RunStatus::Sat => 0,
+            RunStatus::Unsat => 1,
+            RunStatus::Unsupported => 2,
+            RunStatus::Unknown | RunStatus::Timeout | RunStatus::Memout => 3,
+            RunStatus::Error => 4,
         }),
         signal: None,
         host: "here".to_owned(),
@@ -54,7 +54,7 @@ pub(crate) fn run(solver: &str, instance: &str, status: Status, wall_s: f64) -> 
 #[allow(dead_code, reason = "not every test wants all of it")]
 pub(crate) fn sample() -> Vec<Record> {
     let mut records = Vec::new();
-    let mut add = |instance: &str, runs: [(Status, f64); 4]| {
+    let mut add = |instance: &str, runs: [(RunStatus, f64); 4]| {
         let who = [("builtin", "auto"), ("cvc5", "auto"), ("z3", "expand"), ("z3", "keep")];
         for ((solver, quantifiers), (status, wall)) in who.into_iter().zip(runs) {
             let mut record = run(solver, instance, status, wall);
@@ -63,7 +63,7 @@ pub(crate) fn sample() -> Vec<Record> {
             records.push(record);
         }
     };
-    use Status::{Error, Memout, Sat, Timeout, Unknown, Unsat, Unsupported};
+    use RunStatus::{Error, Memout, Sat, Timeout, Unknown, Unsat, Unsupported};
     add("maps/ar-10.hp#ar", [(Sat, 0.02), (Sat, 0.4), (Sat, 0.3), (Sat, 2.5)]);
     add("maps/ar-20.hp#ar", [(Sat, 0.1), (Sat, 3.0), (Sat, 1.5), (Timeout, 10.0)]);
     add("maps/iso-10.hp#iso", [(Sat, 0.01), (Timeout, 10.0), (Sat, 0.5), (Memout, 4.0)]);
