@@ -24,8 +24,9 @@ const CHANCES_PER_TERM: usize = 20;
 const LEAST_CHANCES: usize = 10_000;
 
 /// Chances of an explicit search that takes part of a second, then ten times as many, and so on; the search by counterexamples
-/// after each may write as many terms as take as long.
-const TURNS: [usize; 4] = [600_000, 6_000_000, 60_000_000, 600_000_000];
+/// after each may write as many terms as take as long. The last takes some seconds, and half a gigabyte; what it does not
+/// find is left to the other.
+const TURNS: [usize; 3] = [600_000, 6_000_000, 60_000_000];
 
 /// What was found, and how.
 pub(crate) struct Decision {
