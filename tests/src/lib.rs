@@ -11,10 +11,12 @@ mod beyond;
 pub mod brute;
 mod conformant;
 pub mod fuzz;
+pub mod judge;
 pub mod mixed;
 pub mod model;
 pub mod random;
 pub mod shrink;
+pub mod whole;
 
 /// Tells the person who runs the tests.
 pub fn say(text: &str) {

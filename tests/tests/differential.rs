@@ -4,19 +4,19 @@
 //! number by a time; a failure prints the problem, ready to be put among the fixtures, and the seed that makes it the
 //! first one.
 
-use hyperplan_plan::{Config, Error, Fault, Limits, Outcome, Quantifiers, States, Verdict, solve};
-use hyperplan_problem::{NoFiles, Objective, Overrides, Problem, Rational, Strategy, Value, read};
-use hyperplan_solver::{Deadline, Spec, discover};
+use hyperplan_plan::Quantifiers;
+use hyperplan_problem::{NoFiles, Overrides, Problem, Rational, Strategy, Value, read};
+use hyperplan_solver::{Spec, discover};
 use hyperplan_syntax::SourceMap;
 use hyperplan_tests::brute::{Brute, Path};
+use hyperplan_tests::judge::{EMBEDDED, Judged, Way, fixture, lowered};
 use hyperplan_tests::model;
 use hyperplan_tests::random::{Random, problem};
 use hyperplan_tests::shrink::shrunk;
 use hyperplan_tests::{deadline, number, say};
 use hyperplan_verify::{Budget, check, decide};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::str::FromStr;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 #[path = "differential/beliefs.rs"]
 mod beliefs;
@@ -40,18 +40,6 @@ fn seeds(cases: u64) -> impl Iterator<Item = u64> {
     }
     let in_time = move |_: &u64| end.is_none_or(|end| Instant::now() < end);
     (0..cases).map(move |i| first.wrapping_add(i)).take_while(in_time)
-}
-
-/// The problem as a fixture: with a comment that says how it has to be answered.
-fn fixture(text: &str, expected: bool) -> String {
-    let verdict = if expected { "realizable" } else { "unrealizable" };
-    text.replacen("objective o", &format!("// o: {verdict}\nobjective o"), 1)
-}
-
-fn lowered(text: &str) -> Problem {
-    let lowered = read(&mut SourceMap::new(), "random.hp", text, &NoFiles, &Overrides::default());
-    assert!(!lowered.has_errors(), "{text}\n{:#?}", lowered.diagnostics);
-    lowered.problem
 }
 
 /// A small problem for which there is something wrong with the answer, as there is for a larger one. What is no problem
@@ -88,27 +76,6 @@ impl Tally {
         say(&format!("{} realizable, {} unrealizable", self.realizable, self.unrealizable));
         let rare = 5 * self.realizable.min(self.unrealizable) < all;
         assert!(all < 100 || !rare, "one verdict is less than a fifth of all");
-    }
-}
-
-/// A trace as brute force knows it.
-fn path(system: &model::System, objective: &Problem, trace: &hyperplan_problem::Trace) -> Path {
-    let index = |value: &Value| match value {
-        Value::Bool(b) => usize::from(*b),
-        Value::Int(n) => usize::try_from(*n).expect("values are few and small"),
-        Value::Enum(i) => usize::try_from(*i).expect("values are few and small"),
-        Value::Real(r) => usize::try_from((r * 2).to_integer()).expect("values are few and small"),
-    };
-    let state = |values: &hyperplan_problem::State| {
-        system.state(&values.iter().map(index).collect::<Vec<_>>()).expect("a state of the system")
-    };
-    let action = |id: &hyperplan_problem::ActionId| {
-        let name = &objective.actions[*id];
-        system.actions.iter().position(|a| a == name).expect("an action of the system")
-    };
-    Path {
-        states: trace.states.iter().map(state).collect(),
-        actions: trace.actions.iter().map(action).collect(),
     }
 }
 
@@ -186,68 +153,6 @@ fn action(problem: &Problem, name: &str) -> hyperplan_problem::ActionId {
     problem.action(name).expect("an action of the problem")
 }
 
-/// One way to solve: how quantifiers are decided, how states are written, and budgets.
-#[derive(Clone, Copy, Debug)]
-struct Way {
-    quantifiers: Quantifiers,
-    states: Option<States>,
-    limits: Limits,
-}
-
-impl Way {
-    /// All that a solver might be asked. The embedded one is also asked without pruning, and with budgets that are
-    /// soon exceeded.
-    fn all(solver: &Spec, quantifiers: &[Quantifiers]) -> Vec<Way> {
-        let usual = Limits::default();
-        let unpruned = Limits { prune: false, ..usual };
-        let tight = Limits { layer_states: 40, pairs: 12, swept: 30, residuals: 8, ..usual };
-        let mut ways = Vec::new();
-        for &quantifiers in quantifiers {
-            if quantifiers == Quantifiers::Explicit {
-                let states = Some(States::Onehot);
-                ways.extend([usual, unpruned].map(|limits| Way { quantifiers, states, limits }));
-                continue;
-            }
-            for states in [States::Onehot, States::Enum, States::Bitvec, States::Int, States::Real] {
-                ways.push(Way { quantifiers, states: Some(states), limits: usual });
-            }
-            if solver.is_embedded() {
-                ways.push(Way { quantifiers, states: Some(States::Onehot), limits: unpruned });
-                ways.push(Way { quantifiers, states: None, limits: tight });
-            }
-        }
-        ways
-    }
-
-    fn answer(
-        self,
-        problem: &Problem,
-        objective: &Objective,
-        solver: &Spec,
-        cross_check: Option<Spec>,
-    ) -> Result<Outcome, Error> {
-        let Way { quantifiers, states, limits } = self;
-        let deadline = Deadline::after(Duration::from_secs(60));
-        let config =
-            Config { cross_check, quantifiers, states, limits, deadline, ..Config::new(solver.clone()) };
-        solve(problem, objective, &config)
-    }
-}
-
-/// The verdict of the embedded solver on an objective that must be decided.
-fn verdict(problem: &Problem, objective: &Objective, quantifiers: Quantifiers) -> Verdict {
-    let deadline = Deadline::after(Duration::from_secs(60));
-    let config = Config { quantifiers, deadline, ..Config::new(Spec::Builtin) };
-    solve(problem, objective, &config).expect("it is supported").verdict
-}
-
-enum Judged {
-    Unknown,
-    Unsupported,
-    Right,
-    Wrong(String),
-}
-
 /// How many answers there were, how many requests were not supported or not decided, and what was wrong.
 #[derive(Default)]
 struct Answers {
@@ -268,14 +173,8 @@ impl Answers {
         let expected = brute.verdict();
         let text = fixture(&random.to_string(), expected);
         let typed = lowered(&text);
-        for way in Way::all(solver, ways) {
-            let finite = typed.systems.iter().all(hyperplan_problem::System::is_finite);
-            // The embedded solver has no numbers, and what is not finite is nothing else.
-            let numbers = way.states.is_some_and(States::is_arithmetic);
-            if numbers && solver.is_embedded() || !numbers && !finite {
-                continue;
-            }
-            match self.judged(way, random, &brute, &typed, solver) {
+        for way in Way::all(&typed, solver, ways) {
+            match way.judged(random, &brute, &typed, solver, self.second.clone()) {
                 Judged::Unknown => self.unknown += 1,
                 Judged::Unsupported => self.unsupported += 1,
                 Judged::Right => self.given += 1,
@@ -288,33 +187,11 @@ impl Answers {
         }
     }
 
-    /// What an answer is worth.
-    fn judged(
-        &self,
-        way: Way,
-        random: &model::Problem,
-        brute: &Brute<'_>,
-        typed: &Problem,
-        solver: &Spec,
-    ) -> Judged {
-        let second = self.second.clone();
-        let answer =
-            catch_unwind(AssertUnwindSafe(|| way.answer(typed, &typed.objectives[0], solver, second)));
-        match answer {
-            Ok(Ok(Outcome { verdict: Verdict::Unknown, .. })) => Judged::Unknown,
-            Ok(Err(error)) if error.fault() == Fault::Request => Judged::Unsupported,
-            Ok(answer) => {
-                wrong(answer, random, brute, typed, brute.verdict()).map_or(Judged::Right, Judged::Wrong)
-            }
-            Err(_) => Judged::Wrong("it panics".to_owned()),
-        }
-    }
-
     /// A small problem like the first whose answer was wrong.
     fn smallest(&self) -> Option<String> {
         let (problem, solver, way) = self.first.as_ref()?;
         let is_wrong = |problem: &model::Problem, brute: &Brute<'_>, typed: &Problem| {
-            matches!(self.judged(*way, problem, brute, typed, solver), Judged::Wrong(_))
+            matches!(way.judged(problem, brute, typed, solver, self.second.clone()), Judged::Wrong(_))
         };
         Some(format!("{solver:?} {way:?}, {}", smallest(problem, is_wrong)))
     }
@@ -336,30 +213,6 @@ impl Answers {
     }
 }
 
-/// What is wrong with an answer, if something is.
-fn wrong(
-    answer: Result<Outcome, Error>,
-    random: &model::Problem,
-    brute: &Brute<'_>,
-    typed: &Problem,
-    expected: bool,
-) -> Option<String> {
-    let outcome = match answer {
-        Ok(outcome) => outcome,
-        Err(error) => return Some(error.to_string()),
-    };
-    if (outcome.verdict == Verdict::Realizable) != expected {
-        return Some(format!("the verdict is {:?}", outcome.verdict));
-    }
-    match &outcome.witness {
-        Some(strategy) => {
-            let paths: Vec<Path> = strategy.traces.iter().map(|t| path(&random.system, typed, t)).collect();
-            brute.refute(&paths, expected).map(|why| format!("witness {paths:?}: {why}"))
-        }
-        None => (expected == random.exists[0]).then(|| "no witness".into()),
-    }
-}
-
 /// The embedded solver with the best of its back ends, and now and then with the others too.
 fn embedded(seed: u64) -> impl Iterator<Item = Spec> {
     let backends = Spec::backends();
@@ -373,14 +226,13 @@ fn the_embedded_solver_answers_as_brute_force_does() {
 }
 
 fn embedded_solver_answers(cases: u64) {
-    let ways = [Quantifiers::Auto, Quantifiers::Cegis, Quantifiers::Expand, Quantifiers::Explicit];
     let mut answers = Answers::default();
     let mut tally = Tally::default();
     for seed in seeds(cases) {
         let random = problem(&mut Random::new(seed));
         tally.add(Brute::new(&random, usize::MAX / 8).expect("no limit").verdict());
         for solver in embedded(seed) {
-            answers.compare(&random, &solver, &ways, seed);
+            answers.compare(&random, &solver, EMBEDDED, seed);
         }
     }
     answers.report("embedded");

@@ -17,7 +17,8 @@ use crate::diagnostic::Diagnostic;
 use crate::lexer::{Lexemes, lex};
 use crate::similar::similar;
 use crate::span::{SourceId, Span};
-use crate::token::{Tok, Token};
+use crate::token::{Tok, Token, lexemes};
+use std::collections::BTreeSet;
 
 /// Expressions nested more deeply are refused; so everything that walks the tree may recurse.
 ///
@@ -27,6 +28,13 @@ pub const MAX_NESTING: u32 = 500;
 
 /// After so many errors the rest of a file is not worth reading.
 const MAX_ERRORS: usize = 50;
+
+/// The words and signs that the language knows, and those of other languages for which it has advice; words that mean
+/// something behind others only, such as `when`, are not among them. For those who make texts up.
+#[must_use]
+pub fn vocabulary() -> BTreeSet<&'static str> {
+    lexemes().chain(recover::TOP.iter().copied()).chain(recover::ITEMS.iter().copied()).collect()
+}
 
 /// Parses a problem file. With errors, the file has what could be parsed all the same.
 #[must_use]

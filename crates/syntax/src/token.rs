@@ -109,6 +109,12 @@ const KEYWORDS: &[(&str, Tok)] = &[
     ("else", Tok::Else),
 ];
 
+/// What the lexer tells apart, and words of other languages for which there is advice.
+pub(crate) fn lexemes() -> impl Iterator<Item = &'static str> {
+    let words = TABLE.iter().flat_map(|row| [row.name].into_iter().chain(row.slips.iter().copied()));
+    SYMBOLS.iter().chain(KEYWORDS).map(|(text, _)| *text).chain(words)
+}
+
 /// The token of a word that no name may be.
 pub(crate) fn reserved(word: &str) -> Option<Tok> {
     let keyword = KEYWORDS.iter().find(|(keyword, _)| *keyword == word).map(|&(_, tok)| tok);

@@ -15,14 +15,19 @@ const PATIENCE: Duration = Duration::from_secs(30);
 /// Problem files that are longer, such as large maps, would take most of the time.
 const LONGEST: usize = 20_000;
 
-/// Runs the body on each input of the corpus as it is, and then on damaged ones, for a second or as many as
-/// `HYPERPLAN_FUZZ_SECONDS` says.
+/// Runs the body on each input of the corpus as it is, and then on damaged or random ones, for a second or as many as
+/// `HYPERPLAN_FUZZ_SECONDS` says. `HYPERPLAN_FUZZ_INPUT` names a file that is the only input instead.
 ///
 /// # Panics
 /// If the body does: with the input, and the seed that makes it the first one (`HYPERPLAN_SEED`). A body that takes the
 /// whole process with it leaves no message; `HYPERPLAN_FUZZ_TRACE=1` prints every seed first.
 pub fn run(target: Target) {
-    let corpus = corpus(target.name);
+    if let Some(path) = std::env::var_os("HYPERPLAN_FUZZ_INPUT") {
+        let input = fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        say(&shown(target, &input));
+        return guarded(target, &input, &path.display().to_string());
+    }
+    let corpus = if target.made.is_some() { Vec::new() } else { corpus(target.name) };
     for (path, input) in &corpus {
         guarded(target, input, &path.display().to_string());
     }
@@ -51,14 +56,15 @@ fn guarded(target: Target, input: &[u8], origin: &str) {
         survived && time < PATIENCE,
         "{}, {origin}: fails after {time:?} on\n{}",
         target.name,
-        shown(input)
+        shown(target, input)
     );
 }
 
-fn shown(input: &[u8]) -> String {
-    match str::from_utf8(input) {
-        Ok(text) => text.to_owned(),
-        Err(_) => format!("b\"{}\"", input.escape_ascii()),
+fn shown(target: Target, input: &[u8]) -> String {
+    match (target.made, str::from_utf8(input)) {
+        (Some(made), _) => made(input),
+        (None, Ok(text)) => text.to_owned(),
+        (None, Err(_)) => format!("b\"{}\"", input.escape_ascii()),
     }
 }
 
@@ -97,9 +103,12 @@ fn collect(folder: &Path, files: &mut Vec<(PathBuf, Vec<u8>)>) {
 /// An input of the corpus, damaged as a text where it is one, and sometimes byte by byte.
 fn mutated(random: &mut Random, corpus: &[(PathBuf, Vec<u8>)], target: Target) -> Vec<u8> {
     let one = |random: &mut Random| match target.random {
-        Some(text) if random.below(8) == 0 => text(random).into_bytes(),
+        Some(input) if corpus.is_empty() || random.below(8) == 0 => input(random),
         _ => corpus[random.below(corpus.len())].1.clone(),
     };
+    if target.made.is_some() {
+        return one(random);
+    }
     let (input, other) = (one(random), one(random));
     let mut input = match (str::from_utf8(&input), str::from_utf8(&other)) {
         (Ok(text), Ok(other)) => damaged(random, text, other, target.pieces).into_bytes(),

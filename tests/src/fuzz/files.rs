@@ -1,6 +1,6 @@
 //! The files that problems name, and strategies.
 
-use super::problem::lowered;
+use super::problem::{Files, lowered};
 use hyperplan_problem::answer::{StrategyFile, to_strategy, to_witness};
 use hyperplan_problem::{Lowered, Map, Problem};
 use hyperplan_verify::{Budget, check};
@@ -139,7 +139,7 @@ pub(super) const JSON_PIECES: &[&str] = &[
 ];
 
 /// A problem on a system that is read from a file, and what it means.
-fn on_file(system: &str, files: &dyn Fn(&str) -> Result<Vec<u8>, String>) -> Lowered {
+fn on_file(system: &str, files: Files<'_>) -> Lowered {
     let objective = "objective o { exists p, q. F[0,2] state[p] != state[q] }";
     lowered(&format!("system World = {system}\n{objective}"), files)
 }

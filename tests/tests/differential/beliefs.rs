@@ -1,8 +1,9 @@
 //! Plans that hide and plans that survive counted faults, on random maps: objectives of two players in which much depends on
 //! little, for which there is an explicit search. All ways to decide them agree, and the checker decides them too.
 
-use super::{lowered, seeds, verdict};
+use super::seeds;
 use hyperplan_plan::{Quantifiers, Verdict};
+use hyperplan_tests::judge::{lowered, verdict};
 use hyperplan_tests::random::Random;
 use hyperplan_tests::say;
 use hyperplan_verify::{Budget, decide};

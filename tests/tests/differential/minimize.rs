@@ -1,10 +1,11 @@
 //! The least value of a constant against brute force: random problems in which bounds grow with the constant.
 
-use super::{lowered, seeds, wrong};
+use super::seeds;
 use hyperplan_plan::{Config, Least, Quantifiers, Verdict, minimize};
 use hyperplan_problem as typed;
 use hyperplan_solver::Spec;
 use hyperplan_tests::brute::Brute;
+use hyperplan_tests::judge::{lowered, wrong};
 use hyperplan_tests::model::{Formula, Interval, Problem};
 use hyperplan_tests::random::{Random, problem};
 use hyperplan_tests::say;

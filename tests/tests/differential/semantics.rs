@@ -1,9 +1,9 @@
 //! `within K semantics S` against its definition, and how the semantics relate.
 
-use super::{Answers, Tally, action, embedded, lowered, seeds, state};
-use hyperplan_plan::Quantifiers;
+use super::{Answers, Tally, action, embedded, seeds, state};
 use hyperplan_problem::{Quantifier, Strategy, Trace};
 use hyperplan_tests::brute::{Brute, Path};
+use hyperplan_tests::judge::{EMBEDDED, lowered};
 use hyperplan_tests::model::{Problem, Semantics};
 use hyperplan_tests::random::{Random, halting_problem, problem_with_semantics};
 use hyperplan_tests::say;
@@ -76,7 +76,6 @@ fn the_embedded_solver_finds_what_is_defined() {
 }
 
 pub(super) fn embedded_solver_finds(cases: u64) {
-    let ways = [Quantifiers::Auto, Quantifiers::Cegis, Quantifiers::Expand, Quantifiers::Explicit];
     let mut answers = Answers::default();
     let mut tally = Tally::default();
     for seed in seeds(cases) {
@@ -85,7 +84,7 @@ pub(super) fn embedded_solver_finds(cases: u64) {
         let problem = problem_with_semantics(&mut random, semantics);
         tally.add(Brute::new(&problem, usize::MAX / 8).expect("no limit").verdict());
         for solver in embedded(seed) {
-            answers.compare(&problem, &solver, &ways, seed);
+            answers.compare(&problem, &solver, EMBEDDED, seed);
         }
     }
     answers.report("embedded");

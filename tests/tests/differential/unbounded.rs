@@ -1,9 +1,10 @@
 //! Systems with integers and reals: random ones whose paths meet finitely many states all the same.
 
-use super::{Answers, Tally, check_some_strategies, lowered, seeds};
+use super::{Answers, Tally, check_some_strategies, seeds};
 use hyperplan_plan::Quantifiers;
 use hyperplan_solver::{Spec, discover};
 use hyperplan_tests::brute::Brute;
+use hyperplan_tests::judge::lowered;
 use hyperplan_tests::random::{Random, unbounded_problem};
 use hyperplan_tests::say;
 use hyperplan_verify::{Budget, decide};

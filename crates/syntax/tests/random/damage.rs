@@ -70,6 +70,22 @@ pub const PIECES: &[&str] = &[
     "next(",
     "MODULE ",
     "TRUE",
+    "system S = grid { \"S.G\" } {",
+    "system S = graph(\"g.json\");",
+    "template t(a, T) {",
+    "x: 0..3",
+    "{a, b}",
+    "int",
+    "real",
+    " semantics hopt",
+    "action[p] == action[q]",
+    "state[p] == state[q]",
+    "obs[p] == obs[q]",
+    "a in enabled[p]",
+    "undefined",
+    "stay",
+    "crash",
+    "x' in {0, 1};",
 ];
 
 /// `text`, damaged a few times, with parts of `other` and `pieces`.

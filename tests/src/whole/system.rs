@@ -1,0 +1,251 @@
+//! Systems: by clauses, maps and graphs.
+
+use super::Whole;
+use super::expression::{Scope, proposition, quantity, range};
+use hyperplan_random::Random;
+
+/// The type of a variable.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Bool,
+    /// Integers, with their ends.
+    Range(usize, usize),
+    /// The values, as written.
+    Enum(Vec<String>),
+    Int,
+    Real,
+}
+
+impl Kind {
+    pub(super) fn is_number(&self) -> bool {
+        matches!(self, Kind::Range(..) | Kind::Int | Kind::Real)
+    }
+}
+
+/// What expressions may name of a system.
+#[derive(Clone, Debug)]
+pub(super) struct System {
+    pub(super) number: usize,
+    pub(super) name: String,
+    pub(super) vars: Vec<(String, Kind)>,
+    pub(super) labels: Vec<String>,
+    /// As written in clauses.
+    pub(super) actions: Vec<String>,
+    /// Whether there is something that `obs` sees.
+    pub(super) observes: bool,
+    /// Whether there is a definition of two of its paths.
+    pub(super) defined: bool,
+}
+
+impl System {
+    /// One more system of a file.
+    pub(super) fn random(random: &mut Random, number: usize, whole: &mut Whole) -> System {
+        let mut system = System {
+            number,
+            name: format!("S{number}"),
+            vars: Vec::new(),
+            labels: Vec::new(),
+            actions: Vec::new(),
+            observes: false,
+            defined: false,
+        };
+        let (head, items) = match random.below(4) {
+            0 | 1 => (String::new(), system.plain(random)),
+            2 => system.map(random, whole),
+            _ => (system.graph(random, whole), String::new()),
+        };
+        let items = items + &system.further(random);
+        whole.text += &format!("system {} {head}{{\n{items}}}\n", system.name);
+        system
+    }
+
+    /// Variables and actions.
+    fn plain(&mut self, random: &mut Random) -> String {
+        let infinite = random.once_in(12);
+        for name in &["x", "y", "e"][..1 + random.below(3)] {
+            let kind = match random.below(if infinite { 7 } else { 5 }) {
+                0 | 1 => Kind::Range(0, 1 + random.below(3)),
+                2 => Kind::Range(1, 2 + random.below(2)),
+                3 => Kind::Bool,
+                4 => Kind::Enum(
+                    ["v0", "v1", "v2"][..2 + random.below(2)].iter().map(|v| (*v).into()).collect(),
+                ),
+                5 => Kind::Int,
+                _ => Kind::Real,
+            };
+            self.vars.push(((*name).to_owned(), kind));
+        }
+        // Numbers of one system are all real or none is.
+        if self.vars.iter().any(|(_, kind)| *kind == Kind::Real) {
+            let numbers = self.vars.iter_mut().filter(|(_, kind)| kind.is_number());
+            numbers.for_each(|(_, kind)| *kind = Kind::Real);
+        }
+        let mut items = declared(&self.vars);
+        let actions = random.below(4);
+        self.actions = ["a", "b2", "c"][..actions].iter().map(|name| (*name).to_owned()).collect();
+        if self.actions.is_empty() {
+            self.actions.push("step".to_owned());
+        } else {
+            items += &format!("  action {};\n", self.actions.join(", "));
+        }
+        items
+    }
+
+    /// A map, in the file or in one of its own, with what may stand in maps only.
+    fn map(&mut self, random: &mut Random, whole: &mut Whole) -> (String, String) {
+        let (width, height) = (1 + random.below(3), 1 + random.below(3));
+        let row = |random: &mut Random| -> String {
+            (0..width).map(|_| random.one(&[".", ".", "S", "G", "#", "W"])).collect()
+        };
+        let mut rows: Vec<String> = (0..height).map(|_| row(random)).collect();
+        // Some cell has to be free, and letters that are there have to be explained.
+        rows[0].replace_range(..1, "S");
+        for (name, last) in [("x", width - 1), ("y", height - 1)] {
+            self.vars.push((name.to_owned(), Kind::Range(0, last)));
+        }
+        self.labels.push("start".to_owned());
+        if rows.iter().any(|row| row.contains('G')) {
+            self.labels.push("goal".to_owned());
+        }
+        let mut items = "  legend 'W' = water;\n".to_owned();
+        if rows.iter().any(|row| row.contains('W')) {
+            self.labels.push("water".to_owned());
+        }
+        let moves = ["up", "right", "down", "left", "stay", "up_left", "down_right"];
+        let own = ["up", "right"].into_iter().chain(moves[2..].iter().copied().filter(|_| random.flip()));
+        self.actions = own.map(str::to_owned).collect();
+        items += &format!("  moves {};\n", self.actions.join(", "));
+        let mut crashes = false;
+        for place in ["obstacle", "edge", "corner"] {
+            let rule = random.one(&["", "undefined", "stay", "crash"]);
+            crashes |= rule == "crash";
+            if !rule.is_empty() {
+                items += &format!("  {place} {rule};\n");
+            }
+        }
+        if crashes {
+            self.vars.push(("crash".to_owned(), Kind::Bool));
+        }
+        items += &self.additions(random);
+        let head = if random.once_in(3) {
+            let path = format!("m{}.txt", self.number);
+            whole.files.insert(path.clone(), rows.join("\n"));
+            format!("= grid(\"{path}\") ")
+        } else {
+            let rows: Vec<String> = rows.iter().map(|row| format!("\"{row}\"")).collect();
+            format!("= grid {{ {} }} ", rows.join(" "))
+        };
+        (head, items)
+    }
+
+    /// A graph in a file of its own.
+    fn graph(&mut self, random: &mut Random, whole: &mut Whole) -> String {
+        let nodes = &["n0", "n1", "17", "room A"][..2 + random.below(3)];
+        let actions = &["go", "turn left", "wait"][..1 + random.below(3)];
+        let edge = |random: &mut Random| {
+            let (from, to) = (random.one(nodes), random.one(nodes));
+            format!("[\"{from}\", \"{}\", \"{to}\"]", random.one(actions))
+        };
+        let edges: Vec<String> = (0..1 + random.below(7)).map(|_| edge(random)).collect();
+        let some = random.one(nodes);
+        let text = format!(
+            "{{\"states\": {nodes:?}, \"actions\": {actions:?}, {} \"transitions\": [{}], \"labels\": {{\"goal\": [{some:?}]}}}}",
+            random.one(&["", "\"initial\": [\"n0\"],"]),
+            edges.join(", "),
+        );
+        let path = format!("g{}.json", self.number);
+        let head = format!("= graph(\"{path}\") ");
+        whole.files.insert(path, text);
+        self.vars.push(("node".to_owned(), Kind::Enum(nodes.iter().map(|node| quoted(node)).collect())));
+        self.labels.push("goal".to_owned());
+        self.actions = actions.iter().map(|name| quoted(name)).collect();
+        head
+    }
+
+    /// Variables and actions besides those of a map.
+    fn additions(&mut self, random: &mut Random) -> String {
+        if !random.once_in(3) {
+            return String::new();
+        }
+        self.vars.push(("b".to_owned(), Kind::Bool));
+        self.actions.push("pick".to_owned());
+        "  state b: bool;\n  action pick;\n".to_owned()
+    }
+
+    /// Clauses, and items that all systems may have.
+    fn further(&mut self, random: &mut Random) -> String {
+        // Rules of maps and transitions of graphs are there already.
+        let is_plain = self.labels.is_empty();
+        let own: Vec<(String, Kind)> =
+            self.vars.iter().filter(|(name, _)| name != "crash").cloned().collect();
+        let mut items = String::new();
+        for _ in 0..if is_plain { 1 + random.below(5) } else { random.below(2) } {
+            let action = self.actions[random.below(self.actions.len())].clone();
+            let clause = self.clause(random, &own, &action);
+            items += &clause;
+        }
+        if is_plain && random.once_in(3) {
+            items += "  on * {}\n";
+        }
+        let before = self.clone();
+        let scope = [Scope::of_state(&before)];
+        if random.once_in(2) {
+            items += &format!("  init {};\n", proposition(random, &scope, 1));
+        }
+        for name in &["l0", "l1"][..1 + random.below(2)] {
+            // Labels may use those before them.
+            let before = self.clone();
+            let depth = random.below(3);
+            items +=
+                &format!("  label {name} = {};\n", proposition(random, &[Scope::of_state(&before)], depth));
+            self.labels.push((*name).to_owned());
+        }
+        if random.once_in(3) {
+            items += &format!("  absorb {};\n", proposition(random, &scope, 1));
+        }
+        if random.flip() {
+            self.observes = true;
+            items += &format!("  observe {}, l0;\n", self.vars[0].0);
+        }
+        items
+    }
+
+    fn clause(&self, random: &mut Random, own: &[(String, Kind)], action: &str) -> String {
+        let scope = [Scope::of_state(self)];
+        let action = if random.once_in(6) { "*" } else { action };
+        let guard =
+            if random.flip() { format!(" when {}", proposition(random, &scope, 1)) } else { String::new() };
+        let mut updates = String::new();
+        for (name, kind) in own {
+            if random.once_in(3) {
+                continue;
+            }
+            let value = match kind {
+                Kind::Bool if random.once_in(4) => "in {true, false}".to_owned(),
+                Kind::Bool => format!("= {}", proposition(random, &scope, 1)),
+                Kind::Enum(values) if random.flip() => format!("in {{{}}}", values.join(", ")),
+                Kind::Enum(values) => format!("= {}", values[random.below(values.len())]),
+                Kind::Range(..) | Kind::Int if random.once_in(4) => format!("in {}", range(random, &scope)),
+                Kind::Range(..) | Kind::Int | Kind::Real => format!("= {}", quantity(random, &scope, 1)),
+            };
+            updates += &format!(" {name}' {value};");
+        }
+        format!("  on {action}{guard} {{{updates} }}\n")
+    }
+}
+
+fn declared(vars: &[(String, Kind)]) -> String {
+    let one = |(name, kind): &(String, Kind)| match kind {
+        Kind::Bool => format!("{name}: bool"),
+        Kind::Range(lo, hi) => format!("{name}: {lo}..{hi}"),
+        Kind::Enum(values) => format!("{name}: {{{}}}", values.join(", ")),
+        Kind::Int => format!("{name}: int"),
+        Kind::Real => format!("{name}: real"),
+    };
+    format!("  state {};\n", vars.iter().map(one).collect::<Vec<_>>().join(", "))
+}
+
+/// A name as expressions write it.
+fn quoted(name: &str) -> String {
+    if hyperplan_syntax::is_name(name) { name.to_owned() } else { format!("{name:?}") }
+}
