@@ -72,6 +72,14 @@ fn narrowed<const N: usize>(
     goal: &Goal,
     budget: usize,
 ) -> Result<Belief<Vec<Run>>, Error> {
+    // A path of a system without states is in none: the leading block has no run, or the other player no part in it.
+    let is_empty = |&path: &PathId| arena.graphs[path].initial.is_empty();
+    if paths[..leading].iter().any(is_empty) {
+        return Ok(Belief::Hopeless);
+    }
+    if paths[leading..].iter().any(is_empty) {
+        return Ok(Belief::Unfit);
+    }
     let formula = &arena.task.objective.formula;
     let (own, rest) = goal.split(formula, &|path| paths[..leading].contains(&path));
     let against = rest.opposed(formula);
