@@ -3,7 +3,7 @@
 
 Ends with 1 if something has: an answer changed or got lost, or takes twice as long and a second more. An interrupted
 night goes on where it stopped if started again on the same day. With --faults every fault of scripts/planted-faults.py is
-planted after that: one that the tests miss is bad news as well.
+planted after that: one that the tests miss is bad news as well. So is what scripts/fuzz.py finds, with --fuzz SECONDS.
 """
 
 import argparse
@@ -22,12 +22,16 @@ WAY = ("solver", "quantifiers", "states", "options")
 def main() -> None:
     parser = compared.parser(__doc__, "nightly", 20)
     parser.add_argument("--faults", action="store_true", help="plant every fault, too")
+    parser.add_argument("--fuzz", type=int, metavar="SECONDS", help="fuzz, too, for so long each target")
     parser.add_argument("--problems", nargs="+", metavar="FILE|FOLDER", help="instead of those in specs/")
     parser.add_argument("--day", default=datetime.date.today().isoformat(), help="the folder's name [today]")
     arguments, others = parser.parse_known_args()
     status = night(arguments, others)
     if arguments.faults:
         status = status or subprocess.run([compared.ROOT / "scripts" / "planted-faults.py"]).returncode
+    if arguments.fuzz:
+        fuzz = [compared.ROOT / "scripts" / "fuzz.py", "--seconds", str(arguments.fuzz)]
+        status = status or subprocess.run(fuzz).returncode
     sys.exit(status)
 
 
