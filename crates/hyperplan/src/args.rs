@@ -320,9 +320,19 @@ pub(crate) struct Horizon {
     #[command(flatten)]
     pub(crate) problem: Problem,
     #[command(flatten)]
+    pub(crate) limit: Limit,
+    #[command(flatten)]
     pub(crate) selection: Selection,
     #[command(flatten)]
     pub(crate) output: Output,
+}
+
+/// When a command that needs no solver has to end.
+#[derive(Debug, Args)]
+pub(crate) struct Limit {
+    /// Seconds for the whole command
+    #[arg(long, value_name = "SECONDS")]
+    pub(crate) timeout: Option<f64>,
 }
 
 #[derive(Debug, Args)]
@@ -338,15 +348,16 @@ pub(crate) struct Check {
     /// Prints the file, formatted, instead of what is doubtful; a file with errors is not printed
     #[arg(long, conflicts_with_all = ["format", "timeout", "deny_warnings"])]
     pub(crate) print: bool,
-    /// Seconds for the whole command
-    #[arg(long, value_name = "SECONDS")]
-    pub(crate) timeout: Option<f64>,
+    #[command(flatten)]
+    pub(crate) limit: Limit,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct Verify {
     #[command(flatten)]
     pub(crate) problem: Problem,
+    #[command(flatten)]
+    pub(crate) limit: Limit,
     #[command(flatten)]
     pub(crate) plan: Plan,
     /// What a solver printed for a query that `emit` wrote: its model, by (get-model) or (get-value (...));
@@ -378,6 +389,8 @@ pub(crate) struct Plan {
 pub(crate) struct Plot {
     #[command(flatten)]
     pub(crate) problem: Problem,
+    #[command(flatten)]
+    pub(crate) limit: Limit,
     #[command(flatten)]
     pub(crate) plan: Plan,
     #[command(flatten)]

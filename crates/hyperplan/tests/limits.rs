@@ -97,7 +97,16 @@ fn end(mut child: Child, what: &str) -> (Option<i32>, Option<i32>, String) {
 fn every_command_keeps_its_deadline() {
     let (_folder, files) = giants();
     for file in &files {
-        for arguments in [&["solve"][..], &["check"], &["emit"], &["solve", "--quantifiers", "cegis"]] {
+        for arguments in [
+            &["solve"][..],
+            &["check"],
+            &["emit"],
+            &["horizon"],
+            &["plot"],
+            &["verify", "--actions", "p=u,u,u"],
+            &["solve", "--quantifiers", "cegis"],
+            &["solve", "--quantifiers", "explicit"],
+        ] {
             let all = [arguments, &[text(file), "--timeout", TIMEOUT]].concat();
             let (code, signal, said) = end(start(&all), &all.join(" "));
             assert!(signal.is_none() && matches!(code, Some(0..=3)), "{all:?}: {code:?} {signal:?} {said}");

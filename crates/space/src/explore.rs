@@ -2,7 +2,7 @@
 
 use crate::eval::{bounds, eval_in};
 use crate::graph::{Graph, LIVE, Letter, StateIx, TooLarge};
-use hyperplan_problem::{ActionId, Clause, Expr, LabelId, LabelMemo, Leaf, System, Update, VarId};
+use hyperplan_problem::{ActionId, Clause, Expr, LabelId, LabelMemo, Leaf, System, Update, Value, VarId};
 use rustc_hash::FxHashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -12,6 +12,9 @@ impl Graph {
     /// # Errors
     /// [`TooLarge`] beyond the budget, or where the initial states cannot be enumerated within it.
     pub fn explore(system: &System, budget: usize) -> Result<Graph, TooLarge> {
+        if is_too_wide(system, budget) {
+            return Err(TooLarge);
+        }
         let packing = Packing::new(system).ok_or(TooLarge)?;
         let mut explorer = Explorer {
             system,
@@ -29,6 +32,22 @@ impl Graph {
         let rank = ranks(&starts, &transitions);
         Ok(Graph { width, codes, initial, letters, starts, transitions, rank })
     }
+}
+
+/// Whether it is plain without looking that there are too many transitions: a clause that is enabled everywhere leads to
+/// as many states as it has outcomes, and from each of them to as many.
+fn is_too_wide(system: &System, budget: usize) -> bool {
+    let width = |(var, update): &(VarId, Update)| match update {
+        Update::Within(Expr::Const(Value::Int(lo)), Expr::Const(Value::Int(hi))) => {
+            let (least, most) = bounds(&system.vars[*var].ty).unwrap_or((*lo, *hi));
+            ((*hi).min(most) as i128 - (*lo).max(least) as i128 + 1).max(0) as u128
+        }
+        _ => 1,
+    };
+    let outcomes = |clause: &Clause| clause.updates.iter().map(width).fold(1u128, u128::saturating_mul);
+    let everywhere = system.clauses.iter().filter(|clause| clause.guard.is_true());
+    let most = everywhere.map(outcomes).max().unwrap_or(0);
+    system.absorb.is_false() && most.saturating_mul(most) > budget.saturating_mul(16) as u128
 }
 
 /// Systems that were enumerated, for objectives over equal ones.

@@ -12,7 +12,7 @@ use hyperplan_plan::{Budget, Lints};
 use hyperplan_syntax::{SourceId, parse, print, to_json};
 
 pub(crate) fn run(args: &args::Check, verbose: bool, out: &mut Output) -> Result {
-    let deadline = config::deadline(args.timeout, None)?;
+    let deadline = config::deadline(args.limit.timeout, None)?;
     let file = args.problem.file.display().to_string();
     let source = read_source(&args.problem.file)?;
     let (lowered, sources) = Loaded::lower(&args.problem, &source);

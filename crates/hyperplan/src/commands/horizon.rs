@@ -1,6 +1,7 @@
 //! `hyperplan horizon`: how much of each path an objective reads.
 
 use crate::args;
+use crate::config;
 use crate::failure::{Exit, Result};
 use crate::load::Loaded;
 use crate::output::Output;
@@ -11,6 +12,7 @@ use hyperplan_problem::{FormulaId, Mode, Objective, Semantics};
 use serde::Serialize;
 
 pub(crate) fn run(args: &args::Horizon, out: &mut Output) -> Result {
+    config::deadline(args.limit.timeout, None)?;
     let loaded = Loaded::read(&args.problem, out)?;
     for objective in loaded.selected(args.selection.objective.as_deref(), true)? {
         let report = Report::new(&loaded, objective);

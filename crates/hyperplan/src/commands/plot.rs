@@ -1,8 +1,10 @@
 //! `hyperplan plot`: the map with the paths of a strategy.
 
 use crate::args;
+use crate::config;
 use crate::failure::{Exit, Failure, Result};
 use crate::files::check_writable;
+use crate::guard;
 use crate::load::{Given, Loaded};
 use crate::output::Output;
 use crate::report::{Picture, write_picture};
@@ -13,6 +15,7 @@ pub(crate) fn run(args: &args::Plot, out: &mut Output) -> Result {
     if let Some(path) = &args.output {
         check_writable(path)?;
     }
+    config::deadline(args.limit.timeout, None)?;
     let loaded = Loaded::read(&args.problem, out)?;
     let wanted = args.selection.objective.as_deref();
     let given = Given::of(&args.plan)?;
@@ -31,6 +34,7 @@ pub(crate) fn run(args: &args::Plot, out: &mut Output) -> Result {
         (None, None) => None,
     };
     let traces = strategies.first().map_or(&[][..], |(_, strategy)| &strategy.traces);
+    guard::doing("drawing");
     let scene = Scene { problem: &loaded.problem, objective, traces };
     match picture {
         Some(picture) => write_picture(scene, &picture)?,

@@ -1,9 +1,11 @@
 //! `hyperplan verify`: whether a strategy does what its objective asks, decided without any solver.
 
 use crate::args;
+use crate::config;
 use crate::explain::Explain;
 use crate::failure::{Exit, Failure, Result};
 use crate::files::{self, read_source, write_bytes};
+use crate::guard;
 use crate::load::{Given, Loaded};
 use crate::output::Output;
 use crate::report;
@@ -18,6 +20,7 @@ use serde::Serialize;
 use std::path::Path;
 
 pub(crate) fn run(args: &args::Verify, out: &mut Output) -> Result {
+    let deadline = config::deadline(args.limit.timeout, None)?;
     let loaded = Loaded::read(&args.problem, out)?;
     let name = args.selection.objective.as_deref();
     let (given, strategies) = match (Given::of(&args.plan)?, &args.model) {
@@ -25,12 +28,13 @@ pub(crate) fn run(args: &args::Verify, out: &mut Output) -> Result {
             let strategies = given.strategies(&loaded, name)?;
             (given.name, strategies)
         }
-        (None, Some(file)) => (file.display().to_string(), of_model(&loaded, name, file)?),
+        (None, Some(file)) => (file.display().to_string(), of_model(&loaded, name, file, &deadline)?),
         (None, None) => return Err(Failure::input("a strategy or a model is needed")),
     };
     if let Some(path) = &args.save {
         save(&loaded, &strategies, path)?;
     }
+    guard::doing("checking the strategy");
     let mut worst = Exit::Good;
     for (objective, strategy) in strategies {
         let verdict = check(&loaded.problem, objective, &strategy, &Budget::default());
@@ -57,6 +61,7 @@ fn of_model<'l>(
     loaded: &'l Loaded,
     name: Option<&str>,
     file: &Path,
+    deadline: &Deadline,
 ) -> Result<Vec<(&'l Objective, Strategy)>> {
     let shown = files::name(file);
     let text = read_source(file)?;
@@ -64,7 +69,7 @@ fn of_model<'l>(
     let model = model.map_err(|e| Failure::input(format_args!("{shown} is no model: {e}")))?;
     let objectives = loaded.selected(name, false)?;
     let strategy = |objective: &'l Objective| {
-        let strategy = strategy_of_model(&loaded.problem, objective, &model, &Deadline::never());
+        let strategy = strategy_of_model(&loaded.problem, objective, &model, deadline);
         let strategy = strategy.map_err(|error| {
             let failure = Failure::input(format_args!("{shown}: {}", Explain::default().error(&error)));
             match error {
