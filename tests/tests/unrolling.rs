@@ -7,6 +7,7 @@ use hyperplan_random::Random;
 use hyperplan_solver::Spec;
 use hyperplan_syntax::SourceMap;
 use hyperplan_tests::{number, say};
+use hyperplan_verify::{Budget, decide};
 
 const SYSTEM: &str =
     "system S { state l: bool, r: bool; action step; on step { l' in {true, false}; r' in {true, false}; } }";
@@ -112,6 +113,8 @@ fn windows_meet() {
         let outcome =
             solve(&lowered.problem, &lowered.problem.objectives[0], &config).expect("it is supported");
         let expected = formula.holds(&trace, time);
+        let checked = decide(&lowered.problem, &lowered.problem.objectives[0], &Budget::default());
+        assert_eq!(checked, Ok(Some(expected)), "seed {seed}, the checker\n{text}");
         held += u64::from(expected);
         assert_eq!(outcome.verdict == Verdict::Realizable, expected, "seed {seed}\n{text}");
     }
