@@ -49,7 +49,7 @@ impl Way {
     pub fn all(problem: &Problem, solver: &Spec, quantifiers: &[Quantifiers]) -> Vec<Way> {
         let usual = Limits::default();
         let unpruned = Limits { prune: false, ..usual };
-        let tight = Limits { layer_states: 40, pairs: 12, swept: 30, residuals: 8, ..usual };
+        let tight = Limits { layer_states: 40, pairs: 12, swept: 30, residuals: 8, chances: 0, ..usual };
         let mut ways = Vec::new();
         for &quantifiers in quantifiers {
             if quantifiers == Quantifiers::Explicit {

@@ -176,18 +176,14 @@ impl<'s, 'a> Search<'s, 'a> {
     fn explicit(&self, budget: usize) -> Result<Belief<Assignment>, Stop> {
         let [leading, _] = self.blocks.as_slice() else { return Ok(Belief::Unfit) };
         let goal = Goal::new(&self.encoder.objective.formula, self.want);
-        Ok(match self.encoder.writer.believe(leading, &goal, budget)? {
-            Belief::Found(known) => {
-                let mut found: Assignment = vec![None; self.encoder.objective.paths.len()];
-                for (&path, known) in leading.iter().zip(known) {
-                    found[usize::from(path)] = Some(known);
-                }
-                Belief::Found(found)
+        let assigned = |known| {
+            let mut found: Assignment = vec![None; self.encoder.objective.paths.len()];
+            for (&path, known) in leading.iter().zip(known) {
+                found[usize::from(path)] = Some(known);
             }
-            Belief::Hopeless => Belief::Hopeless,
-            Belief::Open => Belief::Open,
-            Belief::Unfit => Belief::Unfit,
-        })
+            found
+        };
+        Ok(self.encoder.writer.believe(leading, &goal, budget)?.map(assigned))
     }
 
     /// The query without quantifiers, where one is wanted.

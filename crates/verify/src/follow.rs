@@ -5,8 +5,7 @@ use crate::horizon::{horizon, paths_of};
 use crate::report::{Budget, Error, Stop};
 use hyperplan_problem::answer::write_state;
 use hyperplan_problem::{
-    ActionId, Expr, FormulaId, Node, Objective, PathId, PathLeaf, Problem, Quantifier, State, Strategy,
-    Trace, Value,
+    Expr, FormulaId, Node, Objective, PathId, PathLeaf, Problem, Quantifier, State, Strategy, Trace, Value,
 };
 
 /// Why the states of a plan do not follow from its actions.
@@ -180,7 +179,7 @@ impl Followed<'_, '_> {
         for (step, &action) in self.trace.actions.iter().enumerate() {
             let mut next = Vec::new();
             for &state in &layers[step] {
-                next.extend(self.after(state, action)?);
+                next.extend(self.graph.after(state, action)?);
             }
             next.sort_unstable();
             next.dedup();
@@ -193,17 +192,18 @@ impl Followed<'_, '_> {
         for (step, &action) in self.trace.actions.iter().enumerate().rev() {
             let mut onward = Vec::new();
             for &state in &layers[step] {
-                if self.after(state, action)?.iter().any(|to| layers[step + 1].binary_search(to).is_ok()) {
+                if self
+                    .graph
+                    .after(state, action)?
+                    .iter()
+                    .any(|to| layers[step + 1].binary_search(to).is_ok())
+                {
                     onward.push(state);
                 }
             }
             layers[step] = onward;
         }
         Ok(Ok(layers))
-    }
-
-    fn after(&mut self, state: StateId, action: ActionId) -> Result<Vec<StateId>, Stop> {
-        Ok(self.graph.moves(state)?.iter().filter(|m| m.action == action).map(|m| m.to).collect())
     }
 
     /// Where the plan may start: in the state that is given, or in those that `init` and the objective allow.

@@ -153,6 +153,11 @@ impl<'p> Graph<'p> {
         Ok(moves)
     }
 
+    /// Where an action can lead.
+    pub(crate) fn after(&mut self, state: StateId, action: ActionId) -> Result<Vec<StateId>, Stop> {
+        Ok(self.moves(state)?.iter().filter(|m| m.action == action).map(|m| m.to).collect())
+    }
+
     /// Whether there is a transition with that action; the state's moves must have been asked for.
     pub(crate) fn enabled(&self, state: StateId, action: ActionId) -> Option<bool> {
         self.nodes[state].moves.as_ref().map(|moves| moves.iter().any(|m| m.action == action))

@@ -49,11 +49,11 @@ fn can_always_act(
     for action in &trace.actions {
         let mut next = Vec::new();
         for state in here {
-            let before = next.len();
-            next.extend(graph.moves(state)?.iter().filter(|m| m.action == *action).map(|m| m.to));
-            if next.len() == before {
+            let after = graph.after(state, *action)?;
+            if after.is_empty() {
                 return Ok(false);
             }
+            next.extend(after);
         }
         next.sort_unstable();
         next.dedup();

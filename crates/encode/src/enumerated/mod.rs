@@ -97,15 +97,9 @@ impl Writer for Enumerated<'_> {
     }
 
     fn believe(&self, block: &[PathId], goal: &Goal, budget: usize) -> Result<Belief<Vec<Known>>, Error> {
-        Ok(match believe(&self.arena, block.len(), goal, budget)? {
-            Belief::Found(runs) => {
-                let known = block.iter().zip(&runs).map(|(&path, run)| self.known_run(path, run));
-                Belief::Found(known.collect())
-            }
-            Belief::Hopeless => Belief::Hopeless,
-            Belief::Open => Belief::Open,
-            Belief::Unfit => Belief::Unfit,
-        })
+        let known =
+            |runs: Vec<Run>| block.iter().zip(&runs).map(|(&path, run)| self.known_run(path, run)).collect();
+        Ok(believe(&self.arena, block.len(), goal, budget)?.map(known))
     }
 
     fn begin<'e>(

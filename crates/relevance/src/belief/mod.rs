@@ -40,6 +40,18 @@ pub enum Belief<R> {
     Unfit,
 }
 
+impl<R> Belief<R> {
+    /// The same about something made of what was found.
+    pub fn map<S>(self, f: impl FnOnce(R) -> S) -> Belief<S> {
+        match self {
+            Belief::Found(found) => Belief::Found(f(found)),
+            Belief::Hopeless => Belief::Hopeless,
+            Belief::Open => Belief::Open,
+            Belief::Unfit => Belief::Unfit,
+        }
+    }
+}
+
 /// Searches for runs of the leading block that meet the goal whatever the other block, the last, does. `budget` is in chances
 /// looked at.
 ///

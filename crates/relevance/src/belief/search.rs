@@ -49,10 +49,8 @@ impl<'a, const N: usize> Search<'a, N> {
     pub(super) fn run(mut self) -> Result<Belief<Vec<Run>>, Error> {
         for (lead, belief) in self.chances.starts() {
             let Some(belief) = belief else { continue };
-            match self.from(lead, belief)? {
-                Some(Belief::Found(runs)) => return Ok(Belief::Found(runs)),
-                Some(other) => return Ok(other),
-                None => {}
+            if let Some(answer) = self.from(lead, belief)? {
+                return Ok(answer);
             }
         }
         Ok(Belief::Hopeless)
