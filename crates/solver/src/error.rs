@@ -12,6 +12,9 @@ pub enum Unknown {
     /// The time is up, and the solver answers only once it gets no more input.
     #[error("timeout: the solver answers only at the end of its input")]
     WaitsForEnd,
+    /// The effort that it was allowed is spent.
+    #[error("the effort allowed is spent")]
+    Effort,
     /// The search was cancelled.
     #[error("interrupted")]
     Interrupted,

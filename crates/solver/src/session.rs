@@ -50,6 +50,22 @@ pub trait Session: Send {
     /// When the solver fails, or cannot do what the script needs. A passed deadline is no error.
     fn check(&mut self, script: &Script, assumptions: &[Term], deadline: &Deadline) -> Result<Answer, Error>;
 
+    /// The same with limited effort, in memory accesses of the embedded engine's search; about 10^8 take a second. Where it is
+    /// spent the answer is [`Unknown::Effort`], in every run at the same place, and another check goes on from there. Other
+    /// solvers know no such limit.
+    ///
+    /// # Errors
+    /// As of [`Session::check`].
+    fn check_within(
+        &mut self,
+        script: &Script,
+        assumptions: &[Term],
+        deadline: &Deadline,
+        _effort: Option<u64>,
+    ) -> Result<Answer, Error> {
+        self.check(script, assumptions, deadline)
+    }
+
     /// After [`Answer::Sat`]: the values of declared symbols, in order. A symbol that the solver
     /// was never told of is false or zero.
     ///

@@ -46,6 +46,26 @@ fn encoding_one_assertion_stops_at_the_deadline() {
 }
 
 #[test]
+fn effort_is_limited_and_can_be_added_to() {
+    for spec in Spec::backends() {
+        let script = pigeons(7);
+        let mut session = open(&spec, &Options::default()).expect("it is built in");
+        let mut check =
+            |effort| session.check_within(&script, &[], &Deadline::never(), effort).expect("no error");
+        let mut first = || check(Some(1_000));
+        assert_eq!(
+            [first(), first()],
+            [Answer::Unknown(Unknown::Effort), Answer::Unknown(Unknown::Effort)],
+            "{spec:?}"
+        );
+        // What is told to do more does, and what has no limit comes to its end.
+        let answers: Vec<Answer> = (10..40).map(|power| check(Some(1 << power))).collect();
+        assert!(answers.contains(&Answer::Unsat), "{spec:?}");
+        assert_eq!(check(None), Answer::Unsat, "{spec:?}");
+    }
+}
+
+#[test]
 fn a_cancelled_check_says_so() {
     let deadline = Deadline::never();
     let flag = deadline.cancel_flag();

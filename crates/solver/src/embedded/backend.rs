@@ -16,8 +16,9 @@ pub(super) trait Backend: Sized {
     /// Adds a clause.
     fn clause(&mut self, literals: &[i32]);
 
-    /// Whether the clauses are satisfiable under the assumptions; `None` if it was told to stop.
-    fn solve(&mut self, assumptions: &[i32]) -> Option<bool>;
+    /// Whether the clauses are satisfiable under the assumptions; `None` if it was told to stop, or has spent about so much
+    /// effort, where that is limited: memory accesses in propagation, the same in every run.
+    fn solve(&mut self, assumptions: &[i32], effort: Option<u64>) -> Option<bool>;
 
     /// After `Some(true)`: the values of the variables from 1 on; what does not matter is false.
     fn model(&mut self) -> Vec<bool>;

@@ -1,6 +1,7 @@
 //! `BatSat`: all Rust, and so in every build.
 
-use std::sync::atomic::Ordering;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use ::batsat::{BasicCallbacks, Lit, Solver, SolverInterface as _, SolverOpts, lbool};
 
@@ -10,7 +11,12 @@ use super::backend::{Backend, Setup};
 pub(super) struct BatSat {
     sat: Solver<BasicCallbacks>,
     clause: Vec<Lit>,
+    /// Steps until it is to stop.
+    left: Arc<AtomicU64>,
 }
+
+/// Effort of the steps between two questions whether to stop, on average.
+const EFFORT_PER_STEP: u64 = 100;
 
 impl BatSat {
     fn literal(&mut self, number: i32) -> Lit {
@@ -33,10 +39,16 @@ impl Backend for BatSat {
             options.rnd_init_act = true;
         }
         let stop = setup.stop.clone();
+        let left = Arc::new(AtomicU64::new(u64::MAX));
         let mut callbacks = BasicCallbacks::new();
         // It asks at every conflict and decision.
-        callbacks.set_stop(move || stop.load(Ordering::Relaxed));
-        Ok(BatSat { sat: Solver::new(options, callbacks), clause: Vec::new() })
+        let counter = left.clone();
+        callbacks.set_stop(move || {
+            let left = counter.load(Ordering::Relaxed);
+            counter.store(left.saturating_sub(1), Ordering::Relaxed);
+            left == 0 || stop.load(Ordering::Relaxed)
+        });
+        Ok(BatSat { sat: Solver::new(options, callbacks), clause: Vec::new(), left })
     }
 
     fn clause(&mut self, literals: &[i32]) {
@@ -47,7 +59,8 @@ impl Backend for BatSat {
         self.clause = clause;
     }
 
-    fn solve(&mut self, assumptions: &[i32]) -> Option<bool> {
+    fn solve(&mut self, assumptions: &[i32], effort: Option<u64>) -> Option<bool> {
+        self.left.store(effort.map_or(u64::MAX, |effort| effort / EFFORT_PER_STEP), Ordering::Relaxed);
         let assumptions: Vec<Lit> = assumptions.iter().map(|&number| self.literal(number)).collect();
         let answer = self.sat.solve_limited(&assumptions);
         (answer != lbool::UNDEF).then_some(answer == lbool::TRUE)

@@ -41,11 +41,13 @@ fn used() -> Option<u64> {
 pub(super) struct Budget {
     deadline: Deadline,
     memory: Option<Memory>,
+    /// Of the SAT solver; see [`Backend::solve`](super::backend::Backend::solve).
+    pub(super) effort: Option<u64>,
 }
 
 impl Budget {
-    pub(super) fn new(deadline: &Deadline, memory: Option<&Memory>) -> Budget {
-        Budget { deadline: deadline.clone(), memory: memory.cloned() }
+    pub(super) fn new(deadline: &Deadline, memory: Option<&Memory>, effort: Option<u64>) -> Budget {
+        Budget { deadline: deadline.clone(), memory: memory.cloned(), effort }
     }
 
     /// Whether it is time to stop.
@@ -65,8 +67,10 @@ impl Budget {
 /// Why there is no answer to a check.
 #[derive(Debug)]
 pub(super) enum Halt {
-    /// The budget is spent; the next check may go on.
+    /// Time or memory is spent; the next check may go on.
     Spent,
+    /// The effort is spent, and the next check goes on from there.
+    Tired,
     /// A failure.
     Error(Error),
 }

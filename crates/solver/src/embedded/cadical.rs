@@ -39,7 +39,12 @@ impl Backend for Cadical {
         self.0.clause6(literals);
     }
 
-    fn solve(&mut self, assumptions: &[i32]) -> Option<bool> {
+    fn solve(&mut self, assumptions: &[i32], effort: Option<u64>) -> Option<bool> {
+        if let Some(effort) = effort {
+            // It counts what it calls ticks. A limit is for the next search only.
+            let ticks = i32::try_from(effort).unwrap_or(i32::MAX);
+            self.0.limit("ticks", ticks);
+        }
         for &literal in assumptions {
             self.0.assume(literal);
         }

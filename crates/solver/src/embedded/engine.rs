@@ -8,7 +8,7 @@ use super::cnf::{Cnf, width};
 use super::table::Built;
 use super::worker::Worker;
 use crate::deadline::Deadline;
-use crate::error::Error;
+use crate::error::{Error, Unknown};
 use crate::session::{Answer, Identity, Options, QuerySize, Session};
 use crate::transcript::{cannot_keep, keep_query};
 
@@ -94,6 +94,16 @@ impl Engine {
 
 impl Session for Engine {
     fn check(&mut self, script: &Script, assumptions: &[Term], deadline: &Deadline) -> Result<Answer, Error> {
+        self.check_within(script, assumptions, deadline, None)
+    }
+
+    fn check_within(
+        &mut self,
+        script: &Script,
+        assumptions: &[Term],
+        deadline: &Deadline,
+        effort: Option<u64>,
+    ) -> Result<Answer, Error> {
         self.has_model = false;
         if let Some(what) = &self.unsupported {
             return Err(Error::Unsupported { what: what.clone() });
@@ -102,11 +112,12 @@ impl Session for Engine {
         if self.refuted {
             return Ok(Answer::Unsat);
         }
-        let budget = Budget::new(deadline, self.memory.as_ref());
+        let budget = Budget::new(deadline, self.memory.as_ref(), effort);
         match self.answer(script, assumptions, &budget) {
             Ok(true) => Ok(Answer::Sat),
             Ok(false) => Ok(Answer::Unsat),
             Err(Halt::Spent) => Ok(Answer::Unknown(budget.reason())),
+            Err(Halt::Tired) => Ok(Answer::Unknown(Unknown::Effort)),
             Err(Halt::Error(error)) => {
                 if let Error::Unsupported { what } = &error {
                     self.unsupported = Some(what.clone());

@@ -27,8 +27,8 @@ const QUEUE: usize = 8;
 pub(super) enum Ask {
     /// To take clauses, a 0 after each.
     Clauses(Vec<i32>),
-    /// Whether they are satisfiable under assumptions.
-    Solve(Vec<i32>),
+    /// Whether they are satisfiable under assumptions, with so much effort at most, where it is limited.
+    Solve(Vec<i32>, Option<u64>),
 }
 
 /// What came of a search.
@@ -61,7 +61,7 @@ pub(super) fn serve<B: Backend>(setup: &Setup, asks: &Receiver<Ask>, replies: &S
                     rest = &rest[end + 1..];
                 }
             }
-            Ask::Solve(assumptions) => reply(match sat.solve(&assumptions) {
+            Ask::Solve(assumptions, effort) => reply(match sat.solve(&assumptions, effort) {
                 Some(true) => Reply::Sat(sat.model()),
                 Some(false) => Reply::Unsat,
                 None => Reply::Stopped,
@@ -134,7 +134,8 @@ impl Worker {
         self.stop.store(false, Ordering::Relaxed);
         let batch = std::mem::take(&mut self.batch);
         self.ask(Ask::Clauses(batch));
-        self.ask(Ask::Solve(assumptions.iter().map(|literal| literal.number()).collect()));
+        let assumptions = assumptions.iter().map(|literal| literal.number()).collect();
+        self.ask(Ask::Solve(assumptions, budget.effort));
         let mut told = None;
         let reply = self.wait(|| {
             if told.is_none() && budget.spent() {
@@ -149,7 +150,7 @@ impl Worker {
                 Ok(true)
             }
             Some(Reply::Unsat) => Ok(false),
-            Some(Reply::Stopped) => Err(Halt::Spent),
+            Some(Reply::Stopped) => Err(if told.is_some() { Halt::Spent } else { Halt::Tired }),
             Some(Reply::Failed(message)) => Err(self.failed(message).into()),
             None => {
                 self.is_late = true;
@@ -222,7 +223,7 @@ mod tests {
             self.model.get_or_insert_with(|| literals.iter().map(|&number| number > 0).collect());
         }
 
-        fn solve(&mut self, _: &[i32]) -> Option<bool> {
+        fn solve(&mut self, _: &[i32], _: Option<u64>) -> Option<bool> {
             thread::sleep(LONG);
             Some(true)
         }
@@ -237,7 +238,7 @@ mod tests {
     }
 
     fn after(milliseconds: u64) -> Budget {
-        Budget::new(&Deadline::after(Duration::from_millis(milliseconds)), None)
+        Budget::new(&Deadline::after(Duration::from_millis(milliseconds)), None, None)
     }
 
     fn message(halt: Result<bool, Halt>) -> String {
