@@ -195,12 +195,35 @@ impl Residuals {
         if flat.contains(&absorbing) {
             return absorbing;
         }
+        self.subsume(and, &mut flat);
         match flat.as_slice() {
             [] => neutral,
             [only] => *only,
             _ if and => self.intern(Shape::And(flat.into())),
             _ => self.intern(Shape::Or(flat.into())),
         }
+    }
+
+    /// Drops parts that others imply: of the same operator with the same operands, an `U` with a longer interval is weaker, an
+    /// `R` with a longer one stronger. A goal that is asked for again each time that something happens, as in
+    /// `F[0,5] (a & F[0,5] b)`, would else leave a part for every time.
+    fn subsume(&self, and: bool, parts: &mut Vec<Residual>) {
+        let timed = |part: &Residual| match self.shapes[*part as usize] {
+            Shape::Until(Interval { lo, hi }, left, right) => Some(((true, lo, left, right), hi)),
+            Shape::Release(Interval { lo, hi }, left, right) => Some(((false, lo, left, right), hi)),
+            _ => None,
+        };
+        let length = |hi: Option<u32>| hi.map_or(u64::MAX, u64::from);
+        // A conjunction keeps the strongest, a disjunction the weakest.
+        let wants_longer = |until: bool| until != and;
+        let mut kept: FxHashMap<_, Option<u32>> = FxHashMap::default();
+        for (key, hi) in parts.iter().filter_map(timed) {
+            let best = kept.entry(key).or_insert(hi);
+            if (length(hi) > length(*best)) == wants_longer(key.0) {
+                *best = hi;
+            }
+        }
+        parts.retain(|part| timed(part).is_none_or(|(key, hi)| kept.get(&key) == Some(&hi)));
     }
 
     /// The atoms that a residual reads, now or later, one bit each.
