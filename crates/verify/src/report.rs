@@ -12,14 +12,13 @@ pub struct Budget {
     /// bit for each joint state: there 32 bits count as one, so that one is 4 bytes there and 8 deeper.
     pub entries: u64,
     /// Joint moves tried, over all steps and levels. Those that a step of the first block shares with the step two
-    /// before are not tried again.
+    /// before are not tried again. One of a deeper block costs more, and counts as eight.
     pub moves: u64,
 }
 
 impl Default for Budget {
     /// On maps of some 200,000 cells a state takes about 500 bytes, a move that looks like an earlier one 10 to 30 ns;
-    /// so this bounds a check of one free path to well under a gigabyte and about 15 s. Several free blocks cost more
-    /// a move.
+    /// so this bounds a check to well under a gigabyte and about 15 s.
     fn default() -> Self {
         Budget { states: 1_000_000, entries: 30_000_000, moves: 500_000_000 }
     }

@@ -14,6 +14,9 @@ use hyperplan_problem::{Mode, PathId};
 use std::rc::Rc;
 use typed_index_collections::TiVec;
 
+/// How many moves of the first block take as long as one deeper, whose sets are made anew for each move before.
+const DEEPER: usize = 8;
+
 impl Search<'_> {
     /// All joint moves of a block.
     pub(crate) fn joint_moves(&mut self, level: usize, joint: JointId) -> Result<Rc<[JointMove]>, Stop> {
@@ -110,7 +113,7 @@ impl Search<'_> {
                 continue;
             }
             let moves = self.joint_moves(level, joint)?;
-            self.count_moves(moves.len())?;
+            self.count_moves(moves.len() * DEEPER)?;
             for mv in moves.iter() {
                 match self.follow(level, *mv, inner, base)? {
                     Some(v) if v == ValueId::of(decisive) => return Ok(v),
