@@ -35,8 +35,9 @@ pub(crate) struct Cegis<'s, 'a, 'c> {
     /// Checks of all searches, and after how many to give up.
     pub(crate) checks: u32,
     pub(crate) most_checks: Option<u32>,
-    /// After how many terms of one query to give up.
+    /// After how many terms of one query to give up, and after how much effort of the solver in one check.
     pub(crate) most_terms: Option<usize>,
+    pub(crate) most_effort: Option<u64>,
     /// Which runs of the leading block are tried.
     pub(crate) narrowing: Narrowing,
     /// Whether nothing has been lost thereby, so that nothing found means that there is nothing.
@@ -91,6 +92,7 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
             checks: 0,
             most_checks: None,
             most_terms: None,
+            most_effort: None,
             narrowing: Narrowing::default(),
             exact: true,
             copies: Arc::default(),
@@ -134,8 +136,12 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
             {
                 return Err(Stop::Unknown(Reason::NoEnd(self.checks - 1)));
             }
-            if !self.oracle.check(&mut round.dialogue, &round.query.script)? {
-                return Ok(found);
+            let answer =
+                self.oracle.check_within(&mut round.dialogue, &round.query.script, self.most_effort)?;
+            match answer {
+                Some(true) => {}
+                Some(false) => return Ok(found),
+                None => return Err(Stop::Unknown(Reason::NoEnd(self.checks))),
             }
             let symbols = round.symbols();
             let model = self.oracle.model(&mut round.dialogue, &round.query.script, symbols)?;

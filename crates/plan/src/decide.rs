@@ -20,13 +20,12 @@ const ENDLESS: u32 = 200;
 /// How many chances an explicit search looks at in the time that it takes to write a term, by measurement.
 const CHANCES_PER_TERM: usize = 20;
 
-/// Where a query is so small that fewer chances could be looked at, it is asked at once.
-const LEAST_CHANCES: usize = 10_000;
+/// How much effort of the SAT solver takes as long as a chance, by measurement.
+const EFFORT_PER_CHANCE: u64 = 6;
 
-/// Chances of an explicit search that takes part of a second, then ten times as many, and so on; the search by counterexamples
-/// after each may write as many terms as take as long. The last takes some seconds, and half a gigabyte; what it does not
-/// find is left to the other.
-const TURNS: [usize; 3] = [600_000, 6_000_000, 60_000_000];
+/// Chances of an explicit search that takes a few hundredths of a second, then eight times as many, and so on; the other searches
+/// may take as long after each. The last takes some seconds, and a few hundred MB; what it does not find is left to the others.
+const TURNS: [usize; 3] = [600_000, 5_000_000, 40_000_000];
 
 /// What was found, and how.
 pub(crate) struct Decision {
@@ -64,9 +63,12 @@ struct Search<'s, 'a> {
     quantifiers: Quantifiers,
     because: Option<Because>,
     rounds: u32,
-    /// Chances that the last explicit search was allowed.
-    chances: usize,
+    /// How many explicit searches had their turn.
+    turns: usize,
 }
+
+/// An answer of one of the searches: paths of the leading block, or that there are none.
+type Found = Option<Assignment>;
 
 impl<'s, 'a> Search<'s, 'a> {
     fn new(encoder: &'s Encoder<'a>, config: &'s Config) -> Self {
@@ -80,7 +82,7 @@ impl<'s, 'a> Search<'s, 'a> {
             quantifiers: if alone { Quantifiers::Expand } else { config.quantifiers },
             because: alone.then_some(Because::OneBlock),
             rounds: 0,
-            chances: 0,
+            turns: 0,
             blocks,
         }
     }
@@ -109,22 +111,17 @@ impl<'s, 'a> Search<'s, 'a> {
                 Belief::Open | Belief::Unfit => Err(Error::from(Unsupported::NotExplicit).into()),
             };
         }
-        for (turn, narrowing) in self.narrowings().into_iter().enumerate() {
+        for narrowing in self.narrowings() {
+            // What depends on little is found soonest without any query, but for what one run decides.
+            if self.turns == 0
+                && !narrowing.one_run
+                && let Some(found) = self.without_query(choice)?
+            {
+                return Ok(found);
+            }
             let (found, exact) = match self.query(choice, narrowing)? {
-                Some(direct) => {
-                    // As much effort as the query took to write is worth trying to do without it, and more where one query
-                    // was not enough.
-                    let least = if turn == 0 { 0 } else { TURNS[0] };
-                    match self.without_query(choice, least.max(CHANCES_PER_TERM * direct.terms()))? {
-                        Belief::Found(found) => return Ok(Some(found)),
-                        Belief::Hopeless => return Ok(None),
-                        Belief::Open | Belief::Unfit => {}
-                    }
-                    self.quantifiers = Quantifiers::Expand;
-                    self.rounds += 1;
-                    (direct.solve(oracle, 1)?, direct.exact)
-                }
-                None => self.in_turn(choice, narrowing, oracle)?,
+                Some(direct) => self.ask(choice, &direct, oracle)?,
+                None => self.by_counterexamples(choice, narrowing, oracle)?,
             };
             if found.is_some() || exact {
                 return Ok(found);
@@ -133,43 +130,81 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(None)
     }
 
-    /// An explicit search of at most so many chances, where the choice is ours and no query is asked for: what solvers are
-    /// compared by is what they are asked. It is begun anew only where much more is allowed than before.
-    fn without_query(&mut self, choice: Quantifiers, chances: usize) -> Result<Belief<Assignment>, Stop> {
+    /// How many chances the next explicit search may look at, if it has a turn: where the choice is ours, and no query is asked
+    /// for, since what solvers are compared by is what they are asked.
+    fn chances(&self, choice: Quantifiers) -> Option<usize> {
         let Config { solver, queries, cross_check, limits, .. } = self.config;
         let ours = *solver == Spec::Builtin && queries.is_none() && cross_check.is_none();
-        let budget = chances.min(limits.chances);
-        if choice != Quantifiers::Auto || !ours || budget < 4 * self.chances.max(LEAST_CHANCES) {
-            return Ok(Belief::Unfit);
-        }
-        self.chances = budget;
-        let found = self.explicit(budget)?;
-        if matches!(found, Belief::Found(_) | Belief::Hopeless) {
-            (self.quantifiers, self.because) = (Quantifiers::Explicit, Some(Because::Searched));
-        }
-        Ok(found)
+        let before = self.turns.checked_sub(1).map_or(0, |last| TURNS[last]);
+        let next =
+            TURNS.get(self.turns).filter(|_| choice == Quantifiers::Auto && ours && self.blocks.len() == 2);
+        next.filter(|_| before < limits.chances).map(|&chances| chances.min(limits.chances))
     }
 
-    /// Searches by counterexamples and explicitly in turn, where the choice is ours, each with more effort every time.
-    fn in_turn(
+    /// The chances that the last explicit search was allowed, if there will be another: the other searches may do as much before.
+    fn as_much(&self, choice: Quantifiers) -> Option<usize> {
+        self.chances(choice).and(self.turns.checked_sub(1)).map(|last| TURNS[last])
+    }
+
+    /// An explicit search, if it has a turn, and the answer, if it has one.
+    fn without_query(&mut self, choice: Quantifiers) -> Result<Option<Found>, Stop> {
+        let Some(chances) = self.chances(choice) else { return Ok(None) };
+        self.turns += 1;
+        let found = match self.explicit(chances)? {
+            Belief::Found(found) => Some(found),
+            Belief::Hopeless => None,
+            Belief::Open => return Ok(None),
+            Belief::Unfit => {
+                self.turns = TURNS.len();
+                return Ok(None);
+            }
+        };
+        (self.quantifiers, self.because) = (Quantifiers::Explicit, Some(Because::Searched));
+        Ok(Some(found))
+    }
+
+    /// Asks a query and searches explicitly in turn, each with more effort every time; also whether nothing found means that
+    /// there is nothing.
+    fn ask(
+        &mut self,
+        choice: Quantifiers,
+        direct: &Direct<'_, '_>,
+        oracle: &mut Oracle<'_>,
+    ) -> Result<(Found, bool), Stop> {
+        self.quantifiers = Quantifiers::Expand;
+        self.rounds += 1;
+        let mut dialogue = oracle.open(1)?;
+        loop {
+            let effort = self.as_much(choice).map(|chances| chances as u64 * EFFORT_PER_CHANCE);
+            match oracle.check_within(&mut dialogue, &direct.query.script, effort)? {
+                Some(true) => return Ok((Some(direct.paths(oracle, &mut dialogue)?), direct.exact)),
+                Some(false) => return Ok((None, direct.exact)),
+                None => {}
+            }
+            if let Some(found) = self.without_query(choice)? {
+                return Ok((found, true));
+            }
+        }
+    }
+
+    /// Searches by counterexamples and explicitly in turn, each with more effort every time; also whether nothing found means
+    /// that there is nothing.
+    fn by_counterexamples(
         &mut self,
         choice: Quantifiers,
         narrowing: Narrowing,
         oracle: &mut Oracle<'_>,
-    ) -> Result<(Option<Assignment>, bool), Stop> {
-        for chances in TURNS {
-            match self.without_query(choice, chances)? {
-                Belief::Found(found) => return Ok((Some(found), true)),
-                Belief::Hopeless => return Ok((None, true)),
-                Belief::Open => {}
-                Belief::Unfit => break,
-            }
-            match self.by_counterexamples(choice, narrowing, Some(chances / CHANCES_PER_TERM), oracle) {
-                Err(Stop::Unknown(Reason::NoEnd(_))) if !self.config.deadline.passed() => {}
+    ) -> Result<(Found, bool), Stop> {
+        loop {
+            let most = self.as_much(choice);
+            match self.counterexamples(choice, narrowing, most, oracle) {
+                Err(Stop::Unknown(Reason::NoEnd(_))) if most.is_some() && !self.config.deadline.passed() => {}
                 answer => return answer,
             }
+            if let Some(found) = self.without_query(choice)? {
+                return Ok((found, true));
+            }
         }
-        self.by_counterexamples(choice, narrowing, None, oracle)
     }
 
     /// What a search without queries finds of two blocks.
@@ -203,14 +238,14 @@ impl<'s, 'a> Search<'s, 'a> {
         }
     }
 
-    /// Searches by counterexamples; also whether nothing found means that there is nothing.
-    fn by_counterexamples(
+    /// Searches by counterexamples, doing as much as an explicit search of so many chances, if there is a limit; also whether nothing found means that there is nothing.
+    fn counterexamples(
         &mut self,
         choice: Quantifiers,
         narrowing: Narrowing,
-        most_terms: Option<usize>,
+        chances: Option<usize>,
         oracle: &mut Oracle<'_>,
-    ) -> Result<(Option<Assignment>, bool), Stop> {
+    ) -> Result<(Found, bool), Stop> {
         let auto = choice == Quantifiers::Auto;
         if auto {
             self.quantifiers = Quantifiers::Cegis;
@@ -219,7 +254,9 @@ impl<'s, 'a> Search<'s, 'a> {
         let objective = self.encoder.objective;
         let goal = Goal::new(&objective.formula, self.want);
         let mut cegis = Cegis::new(self.encoder, oracle, &self.blocks);
-        (cegis.narrowing, cegis.most_terms) = (narrowing, most_terms);
+        cegis.narrowing = narrowing;
+        cegis.most_terms = chances.map(|chances| chances / CHANCES_PER_TERM);
+        cegis.most_effort = chances.map(|chances| chances as u64 * EFFORT_PER_CHANCE);
         cegis.most_checks = (!patient).then_some(ENDLESS);
         let found = cegis.find(0, &vec![None; objective.paths.len()], &goal, 1);
         self.rounds += cegis.rounds;

@@ -1,6 +1,6 @@
 //! One query for the whole objective: with its quantifiers, or expanded.
 
-use crate::oracle::{Oracle, Stop};
+use crate::oracle::{Dialogue, Oracle, Stop};
 use hyperplan_encode::{Bound, Encoder, Env, Error, Goal, Known, Narrowing, PathIx, Query};
 use hyperplan_problem::{PathId, display};
 use hyperplan_smt::{Script, Term};
@@ -11,13 +11,6 @@ pub(crate) struct Direct<'e, 'a> {
     env: Env,
     /// Whether all runs of the leading block are in it, so that nothing found means that there is nothing.
     pub(crate) exact: bool,
-}
-
-impl Direct<'_, '_> {
-    /// How many terms were written.
-    pub(crate) fn terms(&self) -> usize {
-        self.query.script.terms.len()
-    }
 }
 
 /// Builds the query with the quantifiers of later blocks inside, the paper's formula (16): a path constraint is a
@@ -186,20 +179,28 @@ impl Direct<'_, '_> {
         blocks: usize,
     ) -> Result<Option<Vec<Option<Known>>>, Stop> {
         let mut dialogue = oracle.open(blocks)?;
-        let script = &self.query.script;
-        if !oracle.check(&mut dialogue, script)? {
+        if !oracle.check(&mut dialogue, &self.query.script)? {
             return Ok(None);
         }
+        self.paths(oracle, &mut dialogue).map(Some)
+    }
+
+    /// The paths of the leading block in the solver's model.
+    pub(crate) fn paths(
+        &self,
+        oracle: &mut Oracle<'_>,
+        dialogue: &mut Dialogue,
+    ) -> Result<Vec<Option<Known>>, Stop> {
         let wanted: Vec<Term> =
             self.env.iter().flatten().flat_map(|&path| self.query.paths.symbols(path)).collect();
-        let model = oracle.model(&mut dialogue, script, wanted)?;
+        let model = oracle.model(dialogue, &self.query.script, wanted)?;
         let mut known = vec![None; self.env.len()];
         for (at, path) in self.env.iter().enumerate() {
             if let Some(path) = *path {
                 let decoded = self.query.paths.decode(path, &model);
-                known[at] = Some(decoded.ok_or_else(|| oracle.no_path(&dialogue, self.query.encoder))?);
+                known[at] = Some(decoded.ok_or_else(|| oracle.no_path(dialogue, self.query.encoder))?);
             }
         }
-        Ok(Some(known))
+        Ok(known)
     }
 }

@@ -64,7 +64,7 @@ impl Reason {
             Reason::Solver(Unknown::Timeout | Unknown::WaitsForEnd) => ReasonCode::Timeout,
             Reason::Solver(Unknown::Interrupted) => ReasonCode::Interrupted,
             Reason::Solver(Unknown::Memory | Unknown::MemoryLimit { .. }) => ReasonCode::OutOfMemory,
-            Reason::Solver(Unknown::Incomplete(_)) => ReasonCode::Incomplete,
+            Reason::Solver(Unknown::Incomplete(_) | Unknown::Effort) => ReasonCode::Incomplete,
             Reason::Solver(Unknown::Said(_) | Unknown::Unsaid) => ReasonCode::SolverGaveUp,
             Reason::DeadEnds { .. } => ReasonCode::DeadEnds,
             Reason::NoEnd(_) => ReasonCode::NoEnd,

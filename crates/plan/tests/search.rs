@@ -2,7 +2,7 @@
 //! thread, 2 MiB.
 
 use hyperplan_plan::{
-    Because, Config, EmitConfig, Error, Fault, Note, Outcome, Quantifiers, Reason, States, Track,
+    Because, Config, EmitConfig, Error, Fault, Limits, Note, Outcome, Quantifiers, Reason, States, Track,
     Unsupported, Verdict, Verified, emit, minimize, solve,
 };
 use hyperplan_problem::answer::ReasonCode;
@@ -66,7 +66,8 @@ fn ways_to_decide_agree() {
                 let expected = if realizable { Verdict::Realizable } else { Verdict::Unrealizable };
                 assert_eq!(outcome.verdict, expected, "{quantifiers} {states:?} {objective}");
                 assert_eq!(outcome.verified.is_some(), outcome.witness.is_some());
-                assert!(outcome.reason.is_none() && outcome.iterations > 0);
+                let asked = outcome.quantifiers != Quantifiers::Explicit;
+                assert!(outcome.reason.is_none() && (outcome.iterations > 0 || !asked));
             }
         }
     }
@@ -78,6 +79,9 @@ fn what_was_chosen_is_told_with_its_reason() {
     assert_eq!((outcome.quantifiers, outcome.because), (Quantifiers::Expand, Some(Because::OneBlock)));
     assert_eq!((outcome.states, outcome.verified), (States::Onehot, Some(Verified::BySearch)));
     let outcome = solved(LEAD, &config()).expect("it is supported");
+    assert_eq!((outcome.quantifiers, outcome.because), (Quantifiers::Explicit, Some(Because::Searched)));
+    let limits = Limits { chances: 0, ..Limits::default() };
+    let outcome = solved(LEAD, &Config { limits, ..config() }).expect("it is supported");
     assert_eq!((outcome.quantifiers, outcome.because), (Quantifiers::Expand, Some(Because::Swept)));
     let cegis = Config { quantifiers: Quantifiers::Cegis, ..config() };
     let outcome = solved(LEAD, &cegis).expect("it is supported");

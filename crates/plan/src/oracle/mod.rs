@@ -122,11 +122,22 @@ impl<'c> Oracle<'c> {
 
     /// Whether the script is satisfiable.
     pub(crate) fn check(&mut self, dialogue: &mut Dialogue, script: &Script) -> Result<bool, Stop> {
+        // Where effort has no limit, there is an answer or another reason for none.
+        self.check_within(dialogue, script, None)?.ok_or(Stop::Unknown(Unknown::Effort.into()))
+    }
+
+    /// The same with limited effort, as of [`Session::check_within`]; `None` where it is spent.
+    pub(crate) fn check_within(
+        &mut self,
+        dialogue: &mut Dialogue,
+        script: &Script,
+        effort: Option<u64>,
+    ) -> Result<Option<bool>, Stop> {
         if self.config.deadline.passed() {
             return Err(Stop::Unknown(self.late()));
         }
         let start = Instant::now();
-        let answer = dialogue.session.check(script, &[], &self.config.deadline);
+        let answer = dialogue.session.check_within(script, &[], &self.config.deadline, effort);
         self.account.solving += start.elapsed().as_secs_f64();
         self.account.largest = std::mem::take(&mut self.account.largest).max(dialogue.session.size());
         let answer = answer?;
@@ -137,8 +148,9 @@ impl<'c> Oracle<'c> {
             listener.checked(script, answer == Answer::Sat);
         }
         match answer {
-            Answer::Sat => Ok(true),
-            Answer::Unsat => self.cross_check(dialogue, script).map(|()| false),
+            Answer::Sat => Ok(Some(true)),
+            Answer::Unsat => self.cross_check(dialogue, script).map(|()| Some(false)),
+            Answer::Unknown(Unknown::Effort) => Ok(None),
             Answer::Unknown(unknown @ Unknown::WaitsForEnd) => Err(Stop::Unknown(unknown.into())),
             // The solver may give its own name to what our clock did.
             Answer::Unknown(_) if self.config.deadline.passed() => Err(Stop::Unknown(self.late())),

@@ -1,27 +1,34 @@
 //! The moves of the leading paths, and what they leave of the other player's chances.
 
+use super::Belief;
+use super::distance::Distances;
 use crate::layers::Layers;
 use crate::reach::{Place, Product, Question};
 use crate::residual::{FALSE, Residual, TRUE};
-use hyperplan_space::{Graph, Letter, StateIx};
+use crate::task::Error;
+use hyperplan_space::{Graph, Letter, Run, StateIx};
 use rustc_hash::FxHashMap;
+use std::cmp::Reverse;
 use std::hash::Hash;
 use std::ops::Range;
 use std::rc::Rc;
 
+/// Chances looked at between two questions whether to stop.
+const STRIDE: usize = 10_000;
+
 /// A number for each of some things.
 #[derive(Debug)]
-struct Numbers<T> {
+pub(super) struct Numbers<T> {
     all: Vec<T>,
     index: FxHashMap<T, u32>,
 }
 
 impl<T: Copy + Eq + Hash> Numbers<T> {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Numbers { all: Vec::new(), index: FxHashMap::default() }
     }
 
-    fn of(&mut self, thing: T) -> u32 {
+    pub(super) fn of(&mut self, thing: T) -> u32 {
         let next = self.all.len() as u32;
         *self.index.entry(thing).or_insert_with(|| {
             self.all.push(thing);
@@ -29,8 +36,12 @@ impl<T: Copy + Eq + Hash> Numbers<T> {
         })
     }
 
-    fn get(&self, number: u32) -> T {
+    pub(super) fn get(&self, number: u32) -> T {
         self.all[number as usize]
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.all.len()
     }
 }
 
@@ -44,7 +55,7 @@ type OtherIx = u32;
 type MoveIx = u32;
 
 /// States of all paths; those of the paths that are not meant are 0.
-type States<const N: usize> = [StateIx; N];
+pub(super) type States<const N: usize> = [StateIx; N];
 
 /// A joint step of the other player's paths.
 #[derive(Clone, Copy, Debug)]
@@ -66,15 +77,24 @@ pub(super) struct LeadStep<const N: usize> {
 pub(super) enum After {
     /// It may become any of these, by their places among all that were found.
     Left(Range<usize>),
-    /// It may come true: the leading paths lose.
-    Lost,
+    /// It may come true: the other player wins.
+    Won,
 }
 
 /// What becomes of a chance.
 enum Chance {
     Gone,
     Left(ChanceIx),
-    Lost,
+    Won,
+}
+
+/// Whose wish the residuals of chances are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Wish {
+    /// That of the leading paths, beyond what is asked of them alone.
+    Leading,
+    /// That of the other player.
+    Other,
 }
 
 /// What is known of steps and chances; all of it is found when it is asked for.
@@ -82,8 +102,11 @@ pub(super) struct Chances<'a, const N: usize> {
     own: Product<'a, N>,
     rest: Product<'a, N>,
     graphs: [&'a Graph; N],
+    wish: Wish,
     leading: usize,
     layers: Vec<Layers>,
+    /// Atoms that read the leading paths.
+    reading_leads: u64,
     leads: Numbers<(States<N>, Residual)>,
     moves: Numbers<(u32, [Place; N])>,
     others: Numbers<States<N>>,
@@ -92,6 +115,14 @@ pub(super) struct Chances<'a, const N: usize> {
     after: FxHashMap<(MoveIx, ChanceIx), After>,
     /// What `after` speaks of.
     left: Vec<ChanceIx>,
+    /// How far it is until nothing is asked of the leading paths alone, and until a chance is gone.
+    distances: [Distances<N>; 2],
+    /// The latter by chance, once it was asked for.
+    far: Vec<Option<Option<u32>>>,
+    /// The last set in which each chance was, by number.
+    stamps: Vec<u32>,
+    stamp: u32,
+    asked: usize,
     /// Chances looked at so far.
     pub(super) work: usize,
     pub(super) end: u32,
@@ -101,16 +132,19 @@ impl<'a, const N: usize> Chances<'a, N> {
     /// `None` where not every atom of the formula can be told.
     pub(super) fn new(
         own: &'a Question<'a, N>,
-        rest: &'a Question<'a, N>,
+        (wish, rest): (Wish, &'a Question<'a, N>),
         leading: usize,
         layers: Vec<Layers>,
     ) -> Option<Self> {
         let (own, rest) = (Product::new(own), Product::new(rest));
         let end = own.question.arena.task.end();
         rest.knows_all().then(|| Chances {
+            distances: [Distances::new(&own, 0..leading), Distances::new(&rest, leading..N)],
             graphs: rest.graphs,
+            reading_leads: rest.reading_beside(&(leading..N)),
             own,
             rest,
+            wish,
             leading,
             layers,
             leads: Numbers::new(),
@@ -120,28 +154,22 @@ impl<'a, const N: usize> Chances<'a, N> {
             steps: FxHashMap::default(),
             after: FxHashMap::default(),
             left: Vec::new(),
+            far: Vec::new(),
+            stamps: Vec::new(),
+            stamp: 0,
+            asked: 0,
             work: 0,
             end,
         })
     }
 
-    pub(super) fn question(&self) -> &'a Question<'a, N> {
+    fn question(&self) -> &'a Question<'a, N> {
         self.rest.question
     }
 
-    /// The number of leading paths.
-    pub(super) fn leading(&self) -> usize {
-        self.leading
-    }
-
     /// The states of the leading paths.
-    pub(super) fn states(&self, lead: LeadIx) -> States<N> {
+    fn states(&self, lead: LeadIx) -> States<N> {
         self.leads.get(lead).0
-    }
-
-    /// Whether nothing more is asked of the leading paths alone.
-    pub(super) fn owes_nothing(&self, lead: LeadIx) -> bool {
-        self.leads.get(lead).1 == TRUE
     }
 
     /// Whether a path can be in a state at a time: it can go on, and it matters.
@@ -173,7 +201,7 @@ impl<'a, const N: usize> Chances<'a, N> {
             match self.chance(&self.together(lead, places), other, self.rest.initial, 0) {
                 Chance::Gone => {}
                 Chance::Left(chance) => left.push(chance),
-                Chance::Lost => return None,
+                Chance::Won => return None,
             }
         }
         Some(left)
@@ -193,10 +221,10 @@ impl<'a, const N: usize> Chances<'a, N> {
     fn chance(&mut self, places: &[Place; N], other: OtherIx, before: Residual, time: u32) -> Chance {
         self.work += 1;
         let bits = self.rest.bits(places, time);
-        match self.rest.progress(before, bits, time) {
-            TRUE => Chance::Gone,
-            FALSE => Chance::Lost,
-            left => Chance::Left(self.chances.of((other, left))),
+        match (self.rest.progress(before, bits, time), self.wish) {
+            (TRUE, Wish::Leading) | (FALSE, Wish::Other) => Chance::Gone,
+            (FALSE, Wish::Leading) | (TRUE, Wish::Other) => Chance::Won,
+            (left, _) => Chance::Left(self.chances.of((other, left))),
         }
     }
 
@@ -217,6 +245,23 @@ impl<'a, const N: usize> Chances<'a, N> {
             }
         }
         steps
+    }
+
+    /// A step to a time of leading paths of which nothing is read then.
+    pub(super) fn unread_step(&mut self, lead: LeadIx, time: u32) -> LeadStep<N> {
+        let seen = self.moves.of((time, [(0, None); N]));
+        LeadStep { letters: [0; N], to: lead, seen }
+    }
+
+    /// Whether anything of the leading paths is read as long as a chance is open.
+    pub(super) fn reads_leads(&mut self, chance: ChanceIx) -> bool {
+        let (_, left) = self.chances.get(chance);
+        self.rest.residuals.looks_at(left) & self.reading_leads != 0
+    }
+
+    /// Sorts chances, those last that are nearest to what is wished for.
+    pub(super) fn nearest_last(&mut self, chances: &mut [ChanceIx]) {
+        chances.sort_by_cached_key(|&chance| Reverse((self.far(chance).unwrap_or(u32::MAX), chance)));
     }
 
     fn places(&self, step: &[(Letter, StateIx); N], meant: Range<usize>) -> [Place; N] {
@@ -259,9 +304,9 @@ impl<'a, const N: usize> Chances<'a, N> {
             match self.chance(&self.together(&lead, &step.places), step.to, before, time) {
                 Chance::Gone => {}
                 Chance::Left(chance) => self.left.push(chance),
-                Chance::Lost => {
+                Chance::Won => {
                     self.left.truncate(first);
-                    after = Some(After::Lost);
+                    after = Some(After::Won);
                     break;
                 }
             }
@@ -271,14 +316,126 @@ impl<'a, const N: usize> Chances<'a, N> {
         after
     }
 
+    /// The belief after a step, or a chance that loses by it.
+    pub(super) fn after_all(
+        &mut self,
+        step: LeadStep<N>,
+        belief: &[ChanceIx],
+    ) -> Result<Vec<ChanceIx>, ChanceIx> {
+        let mut next = Vec::new();
+        self.stamp += 1;
+        for &chance in belief {
+            self.work += 1;
+            let After::Left(range) = self.after(step, chance) else { return Err(chance) };
+            for &left in &self.left[range] {
+                if stamped(&mut self.stamps, left, self.stamp) {
+                    next.push(left);
+                }
+            }
+        }
+        Ok(next)
+    }
+
+    /// Whether a chance is in a belief, said fast for many.
+    pub(super) fn marked(&mut self, belief: &[ChanceIx]) -> impl Fn(ChanceIx) -> bool {
+        self.stamp += 1;
+        for &chance in belief {
+            stamped(&mut self.stamps, chance, self.stamp);
+        }
+        |chance| self.stamps.get(chance as usize) == Some(&self.stamp)
+    }
+
+    /// Whether the leading paths need do nothing more.
+    pub(super) fn is_won(&self, lead: LeadIx, belief: &[ChanceIx]) -> bool {
+        belief.is_empty() && self.leads.get(lead).1 == TRUE
+    }
+
+    /// How far a belief is from being empty: the logarithm of how many chances there are, where each counts twice as much for
+    /// every step that it takes at least until it is gone; the leading paths by themselves count as one more.
+    pub(super) fn urgency(&mut self, lead: LeadIx, belief: &[ChanceIx]) -> f64 {
+        let (states, left) = self.leads.get(lead);
+        let own = self.distances[0].of(&mut self.own, states, left);
+        let mut all = vec![f64::from(own.unwrap_or(self.end))];
+        for &chance in belief {
+            all.push(f64::from(self.far(chance).unwrap_or(self.end)));
+        }
+        log_sum(all)
+    }
+
+    fn far(&mut self, chance: ChanceIx) -> Option<u32> {
+        let at = chance as usize;
+        if self.far.len() <= at {
+            self.far.resize(self.chances.len(), None);
+        }
+        if let Some(known) = self.far[at] {
+            return known;
+        }
+        let (other, left) = self.chances.get(chance);
+        let far = self.distances[1].of(&mut self.rest, self.others.get(other), left);
+        self.far[at] = Some(far);
+        far
+    }
+
+    /// # Errors
+    /// [`Error::Interrupted`]; the question is put now and then.
+    pub(super) fn go_on(&mut self) -> Result<(), Error> {
+        if self.work - self.asked > STRIDE {
+            self.asked = self.work;
+            self.question().arena.task.go_on()?;
+        }
+        Ok(())
+    }
+
+    /// The runs of the leading paths from where they begin along these steps, and on to where they are read.
+    pub(super) fn found(&self, first: LeadIx, steps: &[LeadStep<N>], last: LeadIx) -> Belief<Vec<Run>> {
+        let task = &self.question().arena.task;
+        let runs = (0..self.leading).map(|at| {
+            let path = self.question().paths[at];
+            let graph = &self.question().arena.graphs[path];
+            let mut letters: Vec<_> = steps.iter().map(|step| step.letters[at]).collect();
+            let horizon = task.horizon(path) as usize;
+            let mut here = self.states(last)[at];
+            while letters.len() < horizon {
+                let time = letters.len() as u32 + 1;
+                let mut all = graph.successors(here).iter();
+                let &(letter, next) = all.find(|&&(_, next)| task.lasts(graph, next, time))?;
+                letters.push(letter);
+                here = next;
+            }
+            letters.truncate(horizon);
+            Run::replay(graph, self.states(first)[at], letters)
+        });
+        runs.collect::<Option<Vec<Run>>>().map_or(Belief::Open, Belief::Found)
+    }
+
     /// Chances that [`After::Left`] speaks of.
     pub(super) fn left(&self, range: Range<usize>) -> &[ChanceIx] {
         &self.left[range]
     }
 }
 
+/// The base-2 logarithm of the sum of powers of two.
+fn log_sum(mut powers: Vec<f64>) -> f64 {
+    let most = powers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if most == f64::NEG_INFINITY {
+        return most;
+    }
+    // From the smallest to the greatest, so that equal sets have equal sums.
+    powers.sort_by(f64::total_cmp);
+    most + powers.iter().map(|power| (power - most).exp2()).sum::<f64>().log2()
+}
+
+/// Marks a chance as one of the present set; whether it was not before.
+fn stamped(stamps: &mut Vec<u32>, chance: ChanceIx, stamp: u32) -> bool {
+    let at = chance as usize;
+    if stamps.len() <= at {
+        stamps.resize(at + 1, 0);
+    }
+    std::mem::replace(&mut stamps[at], stamp) != stamp
+}
+
 /// Every choice of one of each path's options, of the paths in a range.
-fn joint<T: Copy + Default, const N: usize>(
+pub(super) fn joint<T: Copy + Default, const N: usize>(
     range: Range<usize>,
     options: impl Fn(usize) -> Vec<T>,
 ) -> Vec<[T; N]> {

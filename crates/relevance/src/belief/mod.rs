@@ -6,7 +6,8 @@
 //! paths do not know, as their choice may not depend on the others. It has to be empty in the end, as a chance is gone once
 //! nothing more can be asked for. A chance that becomes `false` loses.
 //!
-//! The search is depth first, with what was learnt from failing: for a node, the chances by which each of its moves failed,
+//! Two searches are made of beliefs. The first keeps only the most promising at each time ([`beam`]), which finds a strategy soon
+//! where there are many. The second is depth first, with what was learnt from failing: for a node, the chances by which each of its moves failed,
 //! traced back, are a *nogood*. A belief that includes a nogood of the same leading states at the same time need not be
 //! searched. This is conflict-directed backjumping with learning (Dechter), the constraint being that no chance be missed.
 //!
@@ -15,14 +16,17 @@
 //! alone is followed beside the belief. So a run that is found is a strategy; and that none is found means that there is none,
 //! as every run of the leading paths is looked at that no nogood excludes.
 
+mod beam;
 mod chances;
+mod distance;
+mod response;
 mod search;
 
 use crate::goal::Goal;
 use crate::layers::Layers;
 use crate::reach::{self, Explored, Question};
 use crate::task::{Arena, Error};
-use chances::Chances;
+use chances::{Chances, Wish};
 use hyperplan_problem::PathId;
 use hyperplan_space::Run;
 use rustc_hash::FxHashMap;
@@ -53,9 +57,9 @@ impl<R> Belief<R> {
 }
 
 /// Searches for runs of the leading block that meet the goal whatever the other block, the last, does. `budget` is in chances
-/// looked at.
+/// that each search may look at: the beams, and that by depth.
 ///
-/// Runs that are hardly longer than the shortest leave the other player least to do, so they are tried first.
+/// Runs that are hardly longer than the shortest leave the other player least to do, so depth first they are tried first.
 ///
 /// # Errors
 /// [`Error::Interrupted`], and [`Error::TooLarge`] where too much can matter of a path alone.
@@ -77,6 +81,9 @@ pub fn believe(
 /// How much later than the earliest a run may owe nothing but safety, at first.
 const SLACK: u32 = 4;
 
+/// How many beliefs at a time the beams keep, one after the other.
+const WIDTHS: [usize; 5] = [4, 16, 128, 1024, 8192];
+
 fn narrowed<const N: usize>(
     arena: &Arena<'_>,
     paths: [PathId; N],
@@ -94,7 +101,7 @@ fn narrowed<const N: usize>(
     }
     let formula = &arena.task.objective.formula;
     let (own, rest) = goal.split(formula, &|path| paths[..leading].contains(&path));
-    let against = rest.opposed(formula);
+    let other = rest.opposed(formula);
     let nothing: Vec<Option<Run>> = vec![None; N];
     let none = FxHashMap::default();
     let question = |goal, slack| Question {
@@ -113,34 +120,42 @@ fn narrowed<const N: usize>(
         if !arena.task.limits.prune {
             return Ok(Explored { layers: [Layers { at: Vec::new() }], lossy: false });
         }
-        let wants = question(if at < leading { goal } else { &against }, slack);
+        let wants = question(if at < leading { goal } else { &other }, slack);
         reach::layers(&wants.about([paths[at]]))
     };
     let others: Vec<Layers> = (leading..N)
         .map(|at| alone(at, None).map(|Explored { layers: [layers], .. }| layers))
         .collect::<Result<_, _>>()?;
-    let (own, rest) = (question(&own, None), question(&rest, None));
-    let mut answer = Belief::Open;
-    for slack in [Some(SLACK), None] {
-        let (mut layers, mut lossy) = (Vec::with_capacity(N), false);
+    let (own, rest, against) = (question(&own, None), question(&rest, None), question(&other, None));
+    let among = |wish, slack| -> Result<(Option<Chances<'_, N>>, bool), Error> {
+        let (mut layers, mut lossy) = (others.clone(), false);
         for at in 0..leading {
             let Explored { layers: [found], lossy: some } = alone(at, slack)?;
             lossy |= some;
-            layers.push(found);
+            layers.insert(at, found);
         }
-        answer = if layers.iter().any(Layers::is_empty) {
-            Belief::Hopeless
-        } else {
-            layers.extend(others.iter().cloned());
-            match Chances::new(&own, &rest, leading, layers) {
-                Some(chances) => Search::new(chances, budget).run()?,
-                None => return Ok(Belief::Unfit),
-            }
-        };
-        // What is too much among few runs is too much among all.
-        if !matches!(answer, Belief::Hopeless) || !lossy {
+        let rest = if wish == Wish::Leading { &rest } else { &against };
+        Ok((Chances::new(&own, (wish, rest), leading, layers), lossy))
+    };
+    let (Some(mut answers), _) = among(Wish::Other, None)? else { return Ok(Belief::Unfit) };
+    if response::is_won(&mut answers, budget / 4)? {
+        return Ok(Belief::Hopeless);
+    }
+    drop(answers);
+    // Where there are many strategies, one of the most promising is among them.
+    let (Some(mut all), _) = among(Wish::Leading, None)? else { return Ok(Belief::Unfit) };
+    for width in WIDTHS {
+        let answer = beam::search(&mut all, width, budget)?;
+        if !matches!(answer, Belief::Open) {
             return Ok(answer);
         }
     }
-    Ok(answer)
+    let (Some(mut few), lossy) = among(Wish::Leading, Some(SLACK))? else { return Ok(Belief::Unfit) };
+    let answer = Search::new(&mut few, budget).run()?;
+    // What is too much among few runs is too much among all.
+    if !matches!(answer, Belief::Hopeless) || !lossy {
+        return Ok(answer);
+    }
+    let budget = all.work.saturating_add(budget);
+    Search::new(&mut all, budget).run()
 }

@@ -5,6 +5,7 @@ use super::question::{Place, Question};
 use crate::residual::{Now, Residual, Residuals};
 use hyperplan_problem::{FormulaId, Node};
 use hyperplan_space::Graph;
+use std::ops::Range;
 
 pub(crate) struct Product<'a, const N: usize> {
     pub(crate) question: &'a Question<'a, N>,
@@ -40,7 +41,7 @@ impl<'a, const N: usize> Product<'a, N> {
     }
 
     /// What is left where the paths enter these places at any time, as far as these tell, relaxed.
-    pub(super) fn relaxed(&mut self, before: Residual, places: &[Place; N]) -> Residual {
+    pub(crate) fn relaxed(&mut self, before: Residual, places: &[Place; N]) -> Residual {
         let bits = self.atoms.own_bits(self.question, &self.graphs, places);
         self.residuals.progress(before, Now { bits: bits.holds, unknown: bits.unknown, last: false })
     }
@@ -48,6 +49,22 @@ impl<'a, const N: usize> Product<'a, N> {
     /// Whether nothing but safety is owed any more.
     pub(super) fn owes_nothing(&self, residual: Residual) -> bool {
         self.residuals.owes_nothing(residual)
+    }
+
+    /// The atoms that read other explored paths than those in a range, one bit each.
+    pub(crate) fn reading_beside(&self, paths: &Range<usize>) -> u64 {
+        let formula = &self.question.arena.task.objective.formula;
+        let beside =
+            |path| self.question.paths.iter().position(|&p| p == path).is_some_and(|at| !paths.contains(&at));
+        let reads = |id: FormulaId| match &formula.nodes[id] {
+            Node::Atom(expr) => {
+                let mut reads = false;
+                expr.for_each_leaf(&mut |leaf| reads |= leaf.paths().into_iter().flatten().any(beside));
+                reads
+            }
+            _ => false,
+        };
+        self.atoms.bit.iter().filter(|(id, _)| reads(**id)).fold(0, |all, (_, bit)| all | 1 << bit)
     }
 
     /// Whether every atom of the formula is known.

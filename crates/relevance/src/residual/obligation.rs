@@ -82,6 +82,42 @@ impl Residuals {
         relaxed
     }
 
+    /// A stronger residual, to be met without the help of some atoms: their literals count as false. Recursion is bounded by
+    /// the nesting of the formula.
+    pub(crate) fn without(&mut self, residual: Residual, atoms: u64) -> Residual {
+        self.strengthened(residual, atoms, &mut FxHashMap::default())
+    }
+
+    fn strengthened(
+        &mut self,
+        residual: Residual,
+        atoms: u64,
+        known: &mut FxHashMap<Residual, Residual>,
+    ) -> Residual {
+        if let Some(&stronger) = known.get(&residual) {
+            return stronger;
+        }
+        let mut of = |all: &mut Self, part: Residual| all.strengthened(part, atoms, known);
+        let stronger = match self.shapes[residual as usize].clone() {
+            Shape::Literal { bit, .. } if atoms >> bit & 1 == 1 => FALSE,
+            Shape::True | Shape::False | Shape::Literal { .. } => residual,
+            ref shape @ (Shape::And(ref parts) | Shape::Or(ref parts)) => {
+                let parts = parts.iter().map(|&part| of(self, part)).collect();
+                self.join(matches!(shape, Shape::And(_)), parts)
+            }
+            Shape::Next { strong, then } => {
+                let then = of(self, then);
+                self.next(strong, then)
+            }
+            ref shape @ (Shape::Until(interval, left, right) | Shape::Release(interval, left, right)) => {
+                let [left, right] = [left, right].map(|part| of(self, part));
+                self.temporal(matches!(shape, Shape::Until(..)), interval, left, right)
+            }
+        };
+        known.insert(residual, stronger);
+        stronger
+    }
+
     /// A weaker residual that reads settling atoms only.
     fn only_settling(&mut self, residual: Residual, known: &mut FxHashMap<Residual, Residual>) -> Residual {
         if let Some(&weaker) = known.get(&residual) {
