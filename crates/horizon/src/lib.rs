@@ -26,6 +26,38 @@ pub struct Horizon {
     pub atom: Option<FormulaId>,
 }
 
+/// Shorter paths are no burden.
+const SHORT: u64 = 10;
+
+/// A path that is much longer than any bound of its objective says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Long {
+    /// The path, of equally long ones the first.
+    pub path: PathId,
+    /// Its horizon, in steps.
+    pub steps: u64,
+    /// The greatest bound.
+    pub bound: u64,
+}
+
+/// The longest path of an objective, where that is surprising: one bound inside another, as in "get there, and from
+/// there back", is common, with a step between them; more add up to what nobody wrote.
+#[must_use]
+pub fn surprising(objective: &Objective) -> Option<Long> {
+    if objective.mode != Mode::Bounded {
+        return None;
+    }
+    let end = |node: &Node| match node {
+        Node::Until(interval, ..) | Node::Release(interval, ..) => interval.hi.map(u64::from),
+        _ => None,
+    };
+    let bound = objective.formula.nodes.iter().filter_map(end).max()?;
+    let each = horizons(objective);
+    let (path, steps) = each.iter_enumerated().rev().map(|(path, h)| (path, h.steps)).max_by_key(|h| h.1)?;
+    let steps = steps.filter(|&steps| steps >= SHORT && steps > 2 * bound + 1)?;
+    Some(Long { path, steps, bound })
+}
+
 /// The horizon of each path variable of an objective.
 #[must_use]
 pub fn horizons(objective: &Objective) -> TiVec<PathId, Horizon> {

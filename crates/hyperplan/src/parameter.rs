@@ -135,10 +135,16 @@ impl<'a> Parameter<'a> {
         let (name, first) = (self.constant, *self.range.start());
         let values = said_range;
         let below = if proved == first { Below::OutOfRange } else { Below::Unrealizable };
+        let refuted = match proved > first {
+            true => format!("; unrealizable with {}", values(first, proved - 1)),
+            false => String::new(),
+        };
         match (least.outcome.verdict, undecided.map(|why| &why.words)) {
             (Verdict::Realizable, Some(reason)) => {
                 let open = values(proved, value - 1);
-                (Below::Unknown, format!("realizable with {name} = {value}, unknown with {open}: {reason}"))
+                let words =
+                    format!("realizable with {name} = {value}, unknown with {open}: {reason}{refuted}");
+                (Below::Unknown, words)
             }
             (Verdict::Realizable, None) if proved == first => {
                 (below, format!("realizable with {name} = {value}, the first of the range"))
@@ -153,7 +159,7 @@ impl<'a> Parameter<'a> {
             (Verdict::Unknown, reason) => {
                 let reason = reason.map_or("undecided", String::as_str);
                 let below = if value == proved { below } else { Below::Unknown };
-                (below, format!("unknown with {name} = {value}: {reason}"))
+                (below, format!("unknown with {name} = {value}: {reason}{refuted}"))
             }
         }
     }

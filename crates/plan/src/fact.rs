@@ -335,6 +335,18 @@ pub enum Note {
     /// States are bit-vectors, since this is too large otherwise.
     #[error("states are bit-vectors, as there are too many to write one by one: {0}")]
     Symbolic(encode::Error),
+    /// Nothing was found, and more steps matter than was perhaps meant.
+    #[error(
+        "{steps} steps of {path} matter, though no bound exceeds {bound}: nested bounds add up; `within K` bounds all of them at once"
+    )]
+    LongHorizon {
+        /// The variable of the longest path.
+        path: String,
+        /// Its horizon.
+        steps: u64,
+        /// The greatest bound.
+        bound: u64,
+    },
     /// A path that the solver chose relies on the outcomes of nondeterministic actions.
     #[error("{path} relies on outcomes that its actions might not have; `exists {path}` picks them too")]
     PicksOutcomes {

@@ -25,6 +25,9 @@ use hyperplan_solver::{QuerySize, Unknown};
 use std::ops::RangeInclusive;
 use std::time::Instant;
 
+/// What part of the time that is left a value may take, where larger ones can still be asked: one in so many.
+const SHARE: u32 = 4;
+
 /// What is known of the least value.
 #[derive(Debug)]
 pub struct Least {
@@ -216,11 +219,15 @@ impl<E> Minimizer<'_, E> {
     fn run(mut self) -> Result<Least, MinimizeError<E>> {
         let mut best: Option<Solved> = None;
         let mut steps = Steps::default();
+        // Smaller values are settled, or took too long.
+        let mut floor = self.low;
+        let mut late: Option<Reason> = None;
         loop {
-            if let Some(least) = best.take_if(|best| best.value == self.low) {
-                return Ok(self.conclude(least, None));
+            floor = floor.max(self.low);
+            if let Some(least) = best.take_if(|best| best.value == floor) {
+                return Ok(self.conclude(least, late));
             }
-            let far = steps.next(self.low, self.high).unwrap_or(self.low);
+            let far = steps.next(floor, self.high).unwrap_or(floor);
             if self.chain.whole {
                 self.follow(far);
             }
@@ -234,7 +241,9 @@ impl<E> Minimizer<'_, E> {
                     continue;
                 }
             }
-            let solved = self.solve(value, problem)?;
+            // Where more does not hurt, the rest of the time is for larger values: some strategy is better than none.
+            let patient = !self.chain.whole || value == self.high;
+            let solved = self.solve(value, problem, if patient { 1 } else { SHARE })?;
             match solved.outcome.verdict {
                 Verdict::Realizable => {
                     steps.bound = Some(value);
@@ -246,6 +255,12 @@ impl<E> Minimizer<'_, E> {
                 }
                 Verdict::Unrealizable => {
                     self.low = value + 1;
+                    late = None;
+                    steps.grow();
+                }
+                Verdict::Unknown if !patient && !self.config.deadline.passed() => {
+                    floor = value + 1;
+                    late = solved.outcome.reason;
                     steps.grow();
                 }
                 Verdict::Unknown => {
@@ -256,9 +271,14 @@ impl<E> Minimizer<'_, E> {
         }
     }
 
-    fn solve(&mut self, value: i64, problem: Problem) -> Result<Solved, MinimizeError<E>> {
+    /// The answer for a value, within a share of the time that is left, if that is limited.
+    fn solve(&mut self, value: i64, problem: Problem, share: u32) -> Result<Solved, MinimizeError<E>> {
         let objective = find(&problem, self.objective, value)?;
-        let outcome = solve_sharing(&problem, objective, self.config, &self.graphs)
+        let mut config = self.config.clone();
+        if let Some(left) = config.deadline.remaining().filter(|_| share > 1) {
+            config.deadline = config.deadline.within(left / share);
+        }
+        let outcome = solve_sharing(&problem, objective, &config, &self.graphs)
             .map_err(|error| MinimizeError::Solve { value, error })?;
         self.seconds.encode += outcome.seconds.encode;
         self.seconds.solve += outcome.seconds.solve;

@@ -88,6 +88,12 @@ fn needs_arithmetic(encoder: &Encoder<'_>) -> Error {
     Unsupported::Arithmetic { system, states: encoder.states }.into()
 }
 
+/// What is perhaps why an objective was too much.
+fn long_horizon(objective: &Objective) -> Option<Note> {
+    let hyperplan_horizon::Long { path, steps, bound } = hyperplan_horizon::surprising(objective)?;
+    Some(Note::LongHorizon { path: objective.paths[path].name.clone(), steps, bound })
+}
+
 /// The outcome with the verdict that follows from what was found, once the witness is checked. What nobody could check
 /// is no answer.
 fn concluded(
@@ -97,7 +103,10 @@ fn concluded(
     found: Result<Option<Assignment>, Stop>,
     account: &Account,
 ) -> Result<Outcome, Error> {
-    let undecided = |reason, outcome| Ok(Outcome { reason: Some(reason), ..outcome });
+    let undecided = |reason, mut outcome: Outcome| {
+        outcome.notes.extend(long_horizon(encoder.objective));
+        Ok(Outcome { reason: Some(reason), ..outcome })
+    };
     let found = match found {
         Ok(found) => found,
         Err(Stop::Unknown(reason)) => return undecided(reason, outcome),

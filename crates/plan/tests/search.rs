@@ -105,6 +105,21 @@ fn notes_are_facts() {
 }
 
 #[test]
+fn bounds_that_add_up_are_told_of_where_nothing_is_found() {
+    let nested = "{ exists p. F[0,9] (goal[p] & F[0,9] (start[p] & F[0,9] goal[p])) }";
+    let hurried = Config { deadline: Deadline::after(Duration::ZERO), ..config() };
+    let outcome = solved(nested, &hurried).expect("so small a system is read without a look at the clock");
+    let long = |note: &Note| matches!(note, Note::LongHorizon { steps: 27, bound: 9, path } if path == "p");
+    assert!(outcome.verdict == Verdict::Unknown && outcome.notes.iter().any(long), "{:?}", outcome.notes);
+    let outcome = solved(nested, &config()).expect("it is supported");
+    assert!(
+        !outcome.notes.iter().any(|note| matches!(note, Note::LongHorizon { .. })),
+        "{:?}",
+        outcome.notes
+    );
+}
+
+#[test]
 fn what_the_embedded_solver_cannot_do_is_told() {
     let keep = solved(LEAD, &Config { quantifiers: Quantifiers::Keep, ..config() });
     assert!(matches!(keep, Err(Error::Unsupported(Unsupported::KeptQuantifiers))), "{keep:?}");
