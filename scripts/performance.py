@@ -13,11 +13,11 @@ import sys
 import tempfile
 from collections.abc import Callable
 
-from bench import backends, compare, costs, machine, maps, run, targets
+from bench import backends, compare, costs, machine, maps, run, scattered, targets
 from bench.context import Context
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-SECTIONS = ("targets", "large", "growth", "least", "quantifiers", "external", "backends", "command", "builds", "profile")
+SECTIONS = ("targets", "large", "growth", "scattered", "least", "quantifiers", "external", "backends", "command", "builds", "profile")
 NOT_BY_DEFAULT = ("builds", "profile")
 
 
@@ -149,6 +149,7 @@ def measure(name: str, context: Context, picture: pathlib.Path) -> None:
     sections = {
         "targets": targets.targets,
         "large": targets.large,
+        "scattered": scattered.scattered,
         "least": compare.least,
         "quantifiers": compare.quantifiers,
         "external": compare.external,

@@ -41,6 +41,10 @@ class Context:
         """The median run of that command."""
         return run.median(self.command(file, *options), self.runs, self.timeout + GRACE)
 
+    def once(self, file: pathlib.Path, *options: str) -> Run:
+        """One run of that command."""
+        return run.once(self.command(file, *options), self.timeout + GRACE)
+
     def show(self, section: str, text: str) -> None:
         """Makes what is known of a section part of the page."""
         self.sections[section] = text
