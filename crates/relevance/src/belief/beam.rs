@@ -36,8 +36,8 @@ pub(super) fn search<const N: usize>(
     budget: usize,
 ) -> Result<Belief<Vec<Run>>, Error> {
     let mut layer = Vec::new();
-    for (lead, belief) in chances.starts() {
-        let Some(belief) = belief else { continue };
+    let Some(starts) = chances.starts(budget)? else { return Ok(Belief::Open) };
+    for (lead, belief) in starts {
         if chances.is_won(lead, &belief) {
             return Ok(chances.found(lead, &[], lead));
         }

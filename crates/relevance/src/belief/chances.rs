@@ -51,6 +51,8 @@ pub(super) type LeadIx = u32;
 pub(super) type ChanceIx = u32;
 /// The states of the other player's paths.
 type OtherIx = u32;
+/// Where the leading paths begin, and the chances that there are then.
+pub(super) type Start = (LeadIx, Vec<ChanceIx>);
 /// A step of the leading paths as the others see it: when it is, the actions, and the states that it leads to.
 type MoveIx = u32;
 
@@ -178,20 +180,32 @@ impl<'a, const N: usize> Chances<'a, N> {
         lasts && self.layers[at].at.get(time as usize).is_none_or(|layer| layer.binary_search(&state).is_ok())
     }
 
-    /// Where the leading paths can begin, each with the chances that there are then; `None` where they lose at once.
-    pub(super) fn starts(&mut self) -> Vec<(LeadIx, Option<Vec<ChanceIx>>)> {
+    /// Where the leading paths can begin, each with the chances that there are then, unless they lose at once; `None` where more
+    /// than `budget` chances would have been looked at in all.
+    pub(super) fn starts(&mut self, budget: usize) -> Result<Option<Vec<Start>>, Error> {
         let initial = |at: usize| -> Vec<Place> {
             let states = self.graphs[at].initial.iter().filter(|&&state| self.matters(at, state, 0));
             states.map(|&state| (state, None)).collect()
         };
+        let many = |paths: Range<usize>| {
+            let each = paths.map(|at| self.graphs[at].initial.len());
+            each.fold(1_usize, usize::saturating_mul)
+        };
+        if many(0..self.leading).max(many(self.leading..N)) > budget {
+            return Ok(None);
+        }
         let leads = joint(0..self.leading, initial);
         let others = joint(self.leading..N, initial);
         let mut starts = Vec::new();
         for lead in leads {
+            self.go_on()?;
+            if self.work > budget {
+                return Ok(None);
+            }
             let Some(entered) = self.lead(&lead, self.own.initial, 0) else { continue };
-            starts.push((entered, self.start(&lead, &others)));
+            starts.extend(self.start(&lead, &others).map(|belief| (entered, belief)));
         }
-        starts
+        Ok(Some(starts))
     }
 
     fn start(&mut self, lead: &[Place; N], others: &[[Place; N]]) -> Option<Vec<ChanceIx>> {

@@ -29,8 +29,8 @@ struct Frame<const N: usize> {
 /// [`Error::Interrupted`].
 pub(super) fn is_won<const N: usize>(chances: &mut Chances<'_, N>, budget: usize) -> Result<bool, Error> {
     let mut search = Search { chances, budget, known: FxHashMap::default() };
-    for (lead, starts) in search.chances.starts() {
-        let Some(mut starts) = starts else { continue };
+    let Some(starts) = search.chances.starts(budget)? else { return Ok(false) };
+    for (lead, mut starts) in starts {
         search.chances.nearest_last(&mut starts);
         let mut won = false;
         while let Some(start) = starts.pop() {

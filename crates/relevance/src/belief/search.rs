@@ -41,8 +41,8 @@ impl<'s, 'a, const N: usize> Search<'s, 'a, N> {
     }
 
     pub(super) fn run(mut self) -> Result<Belief<Vec<Run>>, Error> {
-        for (lead, belief) in self.chances.starts() {
-            let Some(belief) = belief else { continue };
+        let Some(starts) = self.chances.starts(self.budget)? else { return Ok(Belief::Open) };
+        for (lead, belief) in starts {
             if let Some(answer) = self.from(lead, belief)? {
                 return Ok(answer);
             }
