@@ -2,6 +2,7 @@
 
 use super::Belief;
 use super::distance::Distances;
+use super::joint::{Numbers, States, joint};
 use crate::layers::Layers;
 use crate::reach::{Place, Product, Question};
 use crate::residual::{FALSE, Residual, TRUE};
@@ -9,41 +10,11 @@ use crate::task::Error;
 use hyperplan_space::{Graph, Letter, Run, StateIx};
 use rustc_hash::FxHashMap;
 use std::cmp::Reverse;
-use std::hash::Hash;
 use std::ops::Range;
 use std::rc::Rc;
 
 /// Chances looked at between two questions whether to stop.
 const STRIDE: usize = 10_000;
-
-/// A number for each of some things.
-#[derive(Debug)]
-pub(super) struct Numbers<T> {
-    all: Vec<T>,
-    index: FxHashMap<T, u32>,
-}
-
-impl<T: Copy + Eq + Hash> Numbers<T> {
-    pub(super) fn new() -> Self {
-        Numbers { all: Vec::new(), index: FxHashMap::default() }
-    }
-
-    pub(super) fn of(&mut self, thing: T) -> u32 {
-        let next = self.all.len() as u32;
-        *self.index.entry(thing).or_insert_with(|| {
-            self.all.push(thing);
-            next
-        })
-    }
-
-    pub(super) fn get(&self, number: u32) -> T {
-        self.all[number as usize]
-    }
-
-    pub(super) fn len(&self) -> usize {
-        self.all.len()
-    }
-}
 
 /// Where the leading paths are, and what is left of what the goal asks of them alone.
 pub(super) type LeadIx = u32;
@@ -55,9 +26,6 @@ type OtherIx = u32;
 pub(super) type Start = (LeadIx, Vec<ChanceIx>);
 /// A step of the leading paths as the others see it: when it is, the actions, and the states that it leads to.
 type MoveIx = u32;
-
-/// States of all paths; those of the paths that are not meant are 0.
-pub(super) type States<const N: usize> = [StateIx; N];
 
 /// A joint step of the other player's paths.
 #[derive(Clone, Copy, Debug)]
@@ -446,21 +414,4 @@ fn stamped(stamps: &mut Vec<u32>, chance: ChanceIx, stamp: u32) -> bool {
         stamps.resize(at + 1, 0);
     }
     std::mem::replace(&mut stamps[at], stamp) != stamp
-}
-
-/// Every choice of one of each path's options, of the paths in a range.
-pub(super) fn joint<T: Copy + Default, const N: usize>(
-    range: Range<usize>,
-    options: impl Fn(usize) -> Vec<T>,
-) -> Vec<[T; N]> {
-    let mut all = vec![[T::default(); N]];
-    for at in range {
-        let own = options(at);
-        let with = |done: &[T; N]| {
-            let done = *done;
-            own.iter().map(move |&option| std::array::from_fn(|i| if i == at { option } else { done[i] }))
-        };
-        all = all.iter().flat_map(with).collect();
-    }
-    all
 }

@@ -4,7 +4,7 @@
 //! the residual is `true` if the paths in question could do as they please, without deadlines, and without any atom that
 //! reads other paths ever coming to help: such an atom's literals count as false.
 
-use super::chances::{Numbers, States, joint};
+use super::joint::{Numbers, States, joint};
 use crate::reach::{Place, Product};
 use crate::residual::{FALSE, Residual, TRUE};
 use hyperplan_space::{Letter, StateIx};

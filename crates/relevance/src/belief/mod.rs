@@ -19,6 +19,7 @@
 mod beam;
 mod chances;
 mod distance;
+mod joint;
 mod response;
 mod search;
 
