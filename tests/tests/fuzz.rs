@@ -41,6 +41,16 @@ fn pgm() {
 }
 
 #[test]
+fn png() {
+    run(fuzz::PNG);
+}
+
+#[test]
+fn scen() {
+    run(fuzz::SCEN);
+}
+
+#[test]
 fn graph() {
     run(fuzz::GRAPH);
 }

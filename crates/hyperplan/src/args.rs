@@ -534,7 +534,7 @@ fn path_of_actions(text: &str) -> Result<WitnessPath, String> {
         "" => Vec::new(),
         some => some.split(',').map(|action| action.trim().to_owned()).collect(),
     };
-    Ok(WitnessPath { path, system: String::new(), actions, states: Vec::new() })
+    Ok(WitnessPath { path, system: String::new(), actions, states: Vec::new(), positions: None })
 }
 
 /// The most values of a range.

@@ -9,6 +9,7 @@ mod ids;
 pub mod lower;
 mod names;
 mod objective;
+mod place;
 pub mod prelude;
 #[allow(clippy::module_inception)]
 mod problem;
@@ -22,6 +23,7 @@ pub use formula::{Formula, Interval, Node, Written};
 pub use ids::{ActionId, FormulaId, LabelId, PathId, SystemId, VarId};
 pub use lower::{Loader, Lowered, NoFiles, Overrides, lower, read};
 pub use objective::{Mode, Objective, PathVar, Quantifier, Semantics};
+pub use place::Place;
 pub use problem::Problem;
 pub use status::KnownStatus;
 pub use strategy::{Strategy, Trace};

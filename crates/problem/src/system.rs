@@ -1,8 +1,9 @@
 //! Discrete transition systems (the paper's Definition 1, with initial states and nondeterminism).
 
 use crate::edges::Edges;
-use crate::expr::{Expr, Leaf, Type, Value};
+use crate::expr::{Expr, Leaf, State, Type, Value};
 use crate::ids::{ActionId, LabelId, VarId};
+use crate::place::Place;
 use hyperplan_syntax::Span;
 use typed_index_collections::TiVec;
 
@@ -158,6 +159,8 @@ pub struct Map {
     pub y: VarId,
     /// The variable that says that the robot has crashed, where some rule says `crash`.
     pub crash: Option<VarId>,
+    /// Where it lies, if its file says so.
+    pub place: Option<Place>,
 }
 
 impl System {
@@ -177,6 +180,17 @@ impl System {
     #[must_use]
     pub fn label(&self, name: &str) -> Option<LabelId> {
         self.labels.iter_enumerated().find(|(_, l)| l.name == name).map(|(id, _)| id)
+    }
+
+    /// Where a state is in the plane: the centre of its cell in metres, on a map that says where it lies.
+    #[must_use]
+    pub fn position(&self, state: &State) -> Option<(f64, f64)> {
+        let map = self.map.as_ref()?;
+        let number = |var: VarId| match state.get(usize::from(var)) {
+            Some(Value::Int(n)) => u32::try_from(*n).ok(),
+            _ => None,
+        };
+        Some(map.place?.centre((number(map.x)?, number(map.y)?)))
     }
 
     /// The labels that a label reads, directly or not, in an order in which each reads only those before it.

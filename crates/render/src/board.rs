@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::eval::truth;
 use hyperplan_outlet::is_harmless;
-use hyperplan_problem::{State, System, Trace, Type, Value, VarId};
+use hyperplan_problem::{Place, State, System, Trace, Type, Value, VarId};
 
 /// The most cells that are drawn.
 const CELL_LIMIT: u64 = 4_000_000;
@@ -32,6 +32,8 @@ pub struct Board {
     pub obstacles: Vec<(u32, u32)>,
     /// Labels that hold in some cells but not in all.
     pub marks: Vec<Mark>,
+    /// Where a map lies, if it says so.
+    pub place: Option<Place>,
     x: VarId,
     y: VarId,
     crash: Option<VarId>,
@@ -57,6 +59,7 @@ impl Board {
                 origin: (0, 0),
                 obstacles: map.obstacles.clone(),
                 marks: Vec::new(),
+                place: map.place,
                 x: map.x,
                 y: map.y,
                 crash: map.crash,
@@ -92,6 +95,7 @@ impl Board {
             origin: (x_lo, y_lo),
             obstacles: Vec::new(),
             marks: Vec::new(),
+            place: None,
             x,
             y,
             crash: None,
@@ -137,6 +141,14 @@ impl Board {
             }
         }
         marks
+    }
+
+    /// What a cell is in metres, where that is known.
+    pub(crate) fn scale(&self) -> Option<String> {
+        let place = self.place?;
+        let (x, y) = place.centre((0, 0));
+        let turned = if place.yaw == 0.0 { String::new() } else { format!(", turned by {}", place.yaw) };
+        Some(format!("cells of {} m, the centre of (0, 0) at ({x}, {y}) m{turned}", place.cell()))
     }
 
     /// Whether the cell is an obstacle.

@@ -19,6 +19,8 @@ const STROKES: [(&str, &str); 6] = [
 ];
 const MARGIN: f64 = 36.0;
 const LEGEND_LINE: f64 = 20.0;
+/// Between two numbers of metres along an axis.
+const METRES_APART: f64 = 60.0;
 /// Of a table: the size of its letters, from line to line, and from letter to letter.
 const TABLE_SIZE: f64 = 12.0;
 const TABLE_LINE: f64 = 16.0;
@@ -38,7 +40,7 @@ pub fn svg(scene: Scene<'_>) -> Result<String, Error> {
         let traces = scene.traces_of(*system);
         let group = sheet.draw(&traces).set("transform", format!("translate(0 {height})"));
         groups.push(group);
-        let lines = (traces.len() + board.marks.len()) as f64;
+        let lines = (traces.len() + board.marks.len() + usize::from(board.place.is_some())) as f64;
         width = width.max(sheet.width() + 2.0 * MARGIN);
         height += sheet.height() + 2.0 * MARGIN + lines * LEGEND_LINE;
     }
@@ -115,6 +117,7 @@ impl<'a> Sheet<'a> {
         }
         group = group.add(self.obstacles());
         group = group.add(self.lattice()).add(self.axes());
+        group = group.add(self.metres());
         for mark in &self.board.marks {
             group = group.add(self.letters(mark));
         }
@@ -212,6 +215,23 @@ impl<'a> Sheet<'a> {
         group
     }
 
+    /// The same axes in metres, at the bottom and at the right, where the map is not turned.
+    fn metres(&self) -> Group {
+        let group = Group::new().set("class", "axis");
+        let Some(place) = self.board.place.filter(|place| place.yaw == 0.0) else { return group };
+        let every = (METRES_APART / self.cell).ceil() as usize;
+        let columns = (0..self.board.width).step_by(every).fold(group, |group, x| {
+            let (left, top) = self.corner((x, 0));
+            let text = Text::new(metres(place.centre((x, 0)).0)).set("text-anchor", "middle");
+            group.add(text.set("x", left + self.cell / 2.0).set("y", top + self.cell + 26.0))
+        });
+        (0..self.board.height).step_by(every).fold(columns, |group, y| {
+            let (left, top) = self.corner((self.board.width - 1, y));
+            let text = Text::new(metres(place.centre((0, y)).1));
+            group.add(text.set("x", left + self.cell + 4.0).set("y", top + self.cell / 2.0 + 4.0))
+        })
+    }
+
     /// A path: its line, a ring at the start, a square (or a cross after a crash) at the end, and step numbers.
     fn path(&self, place: usize, count: usize, index: usize, name: &str, trace: &Trace) -> Group {
         let (color, dashes) = STROKES[index % STROKES.len()];
@@ -265,7 +285,7 @@ impl<'a> Sheet<'a> {
 
     fn legend(&self, traces: &[(usize, &str, &Trace)]) -> Group {
         let mut group = Group::new().set("font-size", 13);
-        let mut y = MARGIN + self.height() + 34.0;
+        let mut y = MARGIN + self.height() + if self.board.place.is_some() { 46.0 } else { 34.0 };
         for (index, name, trace) in traces {
             let (color, dashes) = STROKES[index % STROKES.len()];
             let line =
@@ -287,8 +307,16 @@ impl<'a> Sheet<'a> {
             group = group.add(swatch).add(Text::new(words).set("x", MARGIN + 44.0).set("y", y));
             y += LEGEND_LINE;
         }
+        if let Some(scale) = self.board.scale() {
+            group = group.add(Text::new(scale).set("x", MARGIN).set("y", y));
+        }
         group
     }
+}
+
+/// A distance as the axes have it, to centimetres.
+fn metres(value: f64) -> String {
+    format!("{} m", number(value))
 }
 
 fn fill(mark: &Mark) -> &'static str {

@@ -147,4 +147,7 @@ fn legend(out: &mut String, board: &Board) {
     if !words.is_empty() {
         let _ = writeln!(out, "{}", words.join(", "));
     }
+    if let Some(scale) = board.scale() {
+        let _ = writeln!(out, "{scale}");
+    }
 }

@@ -146,3 +146,29 @@ fn wide_maps_are_narrow() {
     let drawn = text_map(scene, TextStyle::default()).expect("a map");
     assert_eq!(drawn, format!("0  {row}\n   0         10        20\n"));
 }
+
+#[test]
+fn maps_that_lie_somewhere_say_where() {
+    let files = |path: &str| match path {
+        "m.yaml" => Ok(b"image: m.pgm\nresolution: 0.5\norigin: [-1, 2, 0]".to_vec()),
+        "m.pgm" => Ok(b"P2 3 1 255 255 255 255".to_vec()),
+        _ => Err("no such file".to_owned()),
+    };
+    let text = "system W = grid(\"m.yaml\") { init x == 0; }\nobjective o { exists p. F[0,2] x[p] == 2 }";
+    let lowered = read(&mut SourceMap::new(), "test.hp", text, &files, &Overrides::none());
+    assert!(!lowered.has_errors(), "{:?}", lowered.diagnostics);
+    let problem = lowered.problem;
+    let witness = r#"{"witness": [{"path": "p", "actions": ["right"], "states": [{"x": 0, "y": 0}, {"x": 1, "y": 0}]}]}"#;
+    let witness = StrategyFile::read_all(witness).expect("JSON").remove(0).witness.expect("given");
+    let strategy = to_strategy(&problem, &problem.objectives[0], &witness).expect("it fits");
+    let scene = scene(&problem, &strategy);
+    let text = text_map(scene, TextStyle::default()).expect("a map");
+    assert!(text.ends_with("cells of 0.5 m, the centre of (0, 0) at (-0.75, 2.25) m\n"), "{text}");
+    let drawn = svg(scene).expect("a map");
+    assert!(drawn.contains("-0.75 m") && drawn.contains("2.25 m"), "{drawn}");
+    let table = table(&problem, &problem.objectives[0], &strategy.traces[0]);
+    assert_eq!(
+        table,
+        "time  action  x  y  x in m  y in m\n   0  right   0  0   -0.75    2.25\n   1  -       1  0   -0.25    2.25\n"
+    );
+}

@@ -4,6 +4,10 @@
 //! where is decided when names are resolved (`hyperplan-problem`). Chains of `&`, `|` and `+`/`-`
 //! are flat lists, so that long ones cost no stack.
 
+mod map_item;
+
+pub use map_item::{Area, MapItem};
+
 use crate::span::Span;
 
 /// A name and its place.
@@ -110,10 +114,17 @@ pub enum SystemItem {
     Corner(Ident),
     /// `legend 'W' = water;` or `legend 'W' = #;` (maps only)
     Legend {
-        /// The letter; its span has the quotes.
+        /// The letter, or of a picture the colour as `#rrggbb`; its span has the quotes.
         letter: Text,
         /// The label that it carries, or `None` for an obstacle (`#`).
         label: Option<Ident>,
+        /// The whole item.
+        span: Span,
+    },
+    /// How the cells come about (maps only)
+    Map {
+        /// What is said.
+        item: Box<MapItem>,
         /// The whole item.
         span: Span,
     },

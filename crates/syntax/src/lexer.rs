@@ -6,7 +6,7 @@
 use nom::branch::alt;
 use nom::bytes::complete::{is_not, tag, take_until, take_while};
 use nom::character::complete::{char, digit1, none_of, satisfy};
-use nom::combinator::{map, opt, recognize, rest, value};
+use nom::combinator::{map, opt, recognize, rest, value, verify};
 use nom::error::{Error, ErrorKind};
 use nom::multi::many0_count;
 use nom::sequence::{delimited, pair, preceded, terminated};
@@ -122,7 +122,7 @@ fn complaint(what: Lexeme, piece: &Input<'_>, span: Span) -> Diagnostic {
         }
         Lexeme::UnclosedQuote => {
             Diagnostic::error("unclosed-string", span, "a quote `'` stands around one character")
-                .with_help("write `'W'`; the prime of an update `x'` stands directly after its variable")
+                .with_help("write `'W'`, or `'#0000ff'` for a colour; the prime of an update `x'` stands directly after its variable")
         }
         Lexeme::Number => {
             Diagnostic::error("bad-number", span, format!("`{text}` is neither a number nor a name"))
@@ -224,7 +224,10 @@ fn string(input: Input<'_>) -> Lexed<'_, (Lexeme, Input<'_>)> {
 }
 
 fn quoted(input: Input<'_>) -> Lexed<'_, (Lexeme, Input<'_>)> {
-    let letter = recognize(delimited(char('\''), none_of("'\r\n"), char('\'')));
+    let colour = recognize(pair(char('#'), take_while(|c: char| c.is_ascii_hexdigit())));
+    let colour = verify(colour, |piece: &Input<'_>| matches!(piece.fragment().len(), 7 | 9));
+    let one = alt((colour, recognize(none_of("'\r\n"))));
+    let letter = recognize(delimited(char('\''), one, char('\'')));
     let wrong = recognize(pair(char('\''), opt(terminated(is_not("'\r\n"), char('\'')))));
     alt((
         map(letter, |piece| (Lexeme::Good(Tok::Char), piece)),

@@ -8,6 +8,7 @@
 mod expr;
 mod habit;
 mod item;
+mod map_item;
 mod operand;
 mod recover;
 mod system;

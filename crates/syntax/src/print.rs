@@ -10,6 +10,7 @@
 mod expr;
 mod item;
 mod layout;
+mod map_item;
 mod source;
 mod system;
 

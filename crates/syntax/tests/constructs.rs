@@ -4,8 +4,8 @@ mod common;
 
 use common::{good, names, show, show_set};
 use hyperplan_syntax::ast::{
-    Clause, File, Formula, Item, Objective, ObjectiveBody, Quantifier, System, SystemItem, SystemKind, Type,
-    UpdateValue,
+    Clause, File, Formula, Item, MapItem, Objective, ObjectiveBody, Quantifier, System, SystemItem,
+    SystemKind, Type, UpdateValue,
 };
 
 const ROOMS: &str = "
@@ -66,8 +66,22 @@ fn describe(item: &SystemItem) -> String {
         SystemItem::Obstacle(rule) => format!("obstacle {}", rule.name),
         SystemItem::Edge(rule) => format!("edge {}", rule.name),
         SystemItem::Corner(rule) => format!("corner {}", rule.name),
+        SystemItem::Map { item, .. } => format!("{} {}", item.word(), describe_map_item(item)),
         SystemItem::Legend { letter, label, .. } => {
             format!("legend {} {}", letter.text, label.as_ref().map_or("#", |label| &label.name))
+        }
+    }
+}
+
+fn describe_map_item(item: &MapItem) -> String {
+    match item {
+        MapItem::Scenario { file, row } => format!("{} {}", file.text, show(row)),
+        MapItem::Unknown(rule) => rule.name.clone(),
+        MapItem::Inflate { by, metres } => format!("{}{}", show(by), metres.map_or("", |_| " metres")),
+        MapItem::Scale(by) => show(by),
+        MapItem::Crop(part) => {
+            let (x, y) = (&part.x, &part.y);
+            format!("{} {} {} {}", show(&x.0), show(&x.1), show(&y.0), show(&y.1))
         }
     }
 }
@@ -133,6 +147,10 @@ fn grids() {
         system F1 = grid("a.map") { edge crash; }
         system G1 = graph("a.json") { label a = node == 1; }
         system H = graph("a.json");
+        system I = grid("a.png") {
+          legend '#0000ff' = water; scenario "a.scen" ROW; unknown free; inflate (D + 1) / 2 m;
+          inflate 2; scale (4); crop 0..C - 1, (1)..9;
+        }
         "#,
     );
     let kinds: Vec<String> = (0..9).map(|nth| rows(system(&file, nth))).collect();
@@ -151,6 +169,16 @@ fn grids() {
     assert_eq!(items(system(&file, 1)), ["moves up,down", "edge stay"]);
     assert_eq!(items(system(&file, 2)), ["obstacle crash", "label at (<x,y> in {<0,0>,<3,4>})"]);
     assert_eq!(items(system(&file, 3)), ["moves up", "legend W water", "legend é #"]);
+    let changes = [
+        "legend #0000ff water",
+        "scenario a.scen ROW",
+        "unknown free",
+        "inflate ((+D +1) / 2) metres",
+        "inflate 2",
+        "scale 4",
+        "crop 0 (+C -1) 1 9",
+    ];
+    assert_eq!(items(system(&file, 9)), changes);
 }
 
 fn quantifiers(list: &[Quantifier]) -> String {

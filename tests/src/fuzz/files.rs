@@ -63,7 +63,10 @@ pub(super) const ROS_PIECES: &[&str] = &[
     "-1",
     "1e400",
     "0.5",
+    "mode: raw\n",
     "resolution: 0.05\n",
+    "resolution: ",
+    "origin: ",
     "origin: [0, 0, 0]\n",
     "---\n",
     "é",
@@ -90,6 +93,25 @@ pub(super) const PGM_PIECES: &[&str] = &[
     "\0",
     "\u{7f}",
     "3 2\n",
+];
+
+/// Pieces of lists of scenarios.
+pub(super) const SCEN_PIECES: &[&str] = &[
+    "\n",
+    "\r\n",
+    "\t",
+    " ",
+    "version 1\n",
+    "0",
+    "1",
+    "2",
+    "-1",
+    "1.5",
+    "m.map",
+    "4294967296",
+    "99999999999999999999",
+    "\0",
+    "é",
 ];
 
 /// Pieces of graphs and strategies.
@@ -166,6 +188,10 @@ pub(super) fn map(data: &[u8]) {
     let items = "legend 'W' = water; legend 'x' = #; obstacle crash; edge stay; absorb !water;";
     let lowered = on_file(&format!("grid(\"m.txt\") {{ {items} }}"), &|_| Ok(data.to_vec()));
     let Some(map) = map_of(&lowered) else { return };
+    map_of(&on_file(
+        "grid(\"m.txt\") { legend 'W' = water; legend 'x' = #; inflate 1; scale 2; crop 0..0, 0..0; }",
+        &|_| Ok(data.to_vec()),
+    ));
     let text = String::from_utf8_lossy(data);
     // A header in any spelling ends with a line `map`.
     let words = |line: &str| line.split_whitespace().next().unwrap_or_default().to_lowercase();
@@ -189,6 +215,7 @@ pub(super) fn ros(data: &[u8]) {
         Ok(if is_yaml { data.to_vec() } else { picture.to_vec() })
     };
     map_of(&on_file("grid(\"m.yaml\") { moves up_left, down, stay; }", &files));
+    map_of(&on_file("grid(\"m.yaml\") { unknown free; inflate 0.05 m; scale 2; }", &files));
 }
 
 /// The picture of a ROS map.
@@ -199,6 +226,36 @@ pub(super) fn pgm(data: &[u8]) {
         Ok(if is_yaml { yaml.to_vec() } else { data.to_vec() })
     };
     map_of(&on_file("grid(\"m.yaml\");", &files));
+}
+
+/// A picture in PNG: a map by its colours, and one of ROS.
+pub(super) fn png(data: &[u8]) {
+    let yaml = |mode: &str| format!("image: m.png\nmode: {mode}\nresolution: 0.1\norigin: [1, -2, 0.5]\n");
+    for mode in ["trinary", "scale", "raw"] {
+        let files = |path: &str| {
+            let is_yaml = path == "m.yaml";
+            Ok(if is_yaml { yaml(mode).into_bytes() } else { data.to_vec() })
+        };
+        map_of(&on_file("grid(\"m.yaml\") { unknown free; inflate 0.1 m; scale 2; }", &files));
+    }
+    let items = "legend '#0000ff' = water; legend '#00a000' = start; legend '#ff0000' = #;";
+    map_of(&on_file(&format!("grid(\"m.png\") {{ {items} }}"), &|_| Ok(data.to_vec())));
+}
+
+/// A list of scenarios, of which the first two are tried.
+pub(super) fn scen(data: &[u8]) {
+    let files = |path: &str| {
+        let is_map = path == "m.map";
+        Ok(if is_map { b"type octile\nheight 2\nwidth 3\nmap\n..T\n...\n".to_vec() } else { data.to_vec() })
+    };
+    for number in 1..=2 {
+        let items = format!("scenario \"a.scen\" {number}; inflate 1/2; crop 0..2, 0..1;");
+        let lowered = on_file(&format!("grid(\"m.map\") {{ {items} }}"), &files);
+        if map_of(&lowered).is_some() {
+            let system = &lowered.problem.systems[hyperplan_problem::SystemId(0)];
+            assert!(system.label("start").is_some() && system.label("goal").is_some());
+        }
+    }
 }
 
 /// A graph.

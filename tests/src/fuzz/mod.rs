@@ -67,13 +67,17 @@ pub const MAP: Target = target("map", files::map, files::MAP_PIECES);
 pub const ROS: Target = target("ros", files::ros, files::ROS_PIECES);
 /// The pictures of ROS maps.
 pub const PGM: Target = target("pgm", files::pgm, files::PGM_PIECES);
+/// Pictures in PNG: maps by their colours, and those of ROS maps.
+pub const PNG: Target = target("png", files::png, &[]);
+/// Scenarios of the Moving AI benchmarks.
+pub const SCEN: Target = target("scen", files::scen, files::SCEN_PIECES);
 /// Graphs.
 pub const GRAPH: Target = target("graph", files::graph, files::JSON_PIECES);
 /// Strategies.
 pub const STRATEGY: Target = target("strategy", files::strategy, files::JSON_PIECES);
 
 /// All of them.
-pub const ALL: &[Target] = &[PROBLEM, MEANING, SOLVE, REPLY, MAP, ROS, PGM, GRAPH, STRATEGY];
+pub const ALL: &[Target] = &[PROBLEM, MEANING, SOLVE, REPLY, MAP, ROS, PGM, PNG, SCEN, GRAPH, STRATEGY];
 
 impl Target {
     /// What libFuzzer may put into inputs, in the format of its dictionaries; nothing where inputs are no text.

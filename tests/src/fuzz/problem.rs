@@ -86,6 +86,8 @@ fn file(path: &str) -> Result<Vec<u8>, String> {
         "map" => include_bytes!("../../corpus/map/benchmark"),
         "yaml" => include_bytes!("../../corpus/ros/room"),
         "pgm" => include_bytes!("../../corpus/pgm/raw"),
+        "png" => include_bytes!("../../corpus/png/garden"),
+        "scen" => include_bytes!("../../corpus/scen/two"),
         "txt" => include_bytes!("../../corpus/map/small"),
         _ => return Err("there is no such file".into()),
     };

@@ -100,6 +100,7 @@ impl System {
         let mut rows: Vec<String> = (0..height).map(|_| row(random)).collect();
         // Some cell has to be free, and letters that are there have to be explained.
         rows[0].replace_range(..1, "S");
+        let (changes, width, height) = changed(random, width, height);
         for (name, last) in [("x", width - 1), ("y", height - 1)] {
             self.vars.push((name.to_owned(), Kind::Range(0, last)));
         }
@@ -107,7 +108,7 @@ impl System {
         if rows.iter().any(|row| row.contains('G')) {
             self.labels.push("goal".to_owned());
         }
-        let mut items = "  legend 'W' = water;\n".to_owned();
+        let mut items = format!("  legend 'W' = water;\n{changes}");
         if rows.iter().any(|row| row.contains('W')) {
             self.labels.push("water".to_owned());
         }
@@ -232,6 +233,25 @@ impl System {
         }
         format!("  on {action}{guard} {{{updates} }}\n")
     }
+}
+
+/// What is done to a map of that size, and its size then.
+fn changed(random: &mut Random, width: usize, height: usize) -> (String, usize, usize) {
+    let (mut items, mut width, mut height) = (String::new(), width, height);
+    if random.once_in(6) {
+        items += &format!("  inflate {};\n", random.one(&["0", "1/2", "T - 2"]));
+    }
+    if random.once_in(4) && width.max(height) > 1 {
+        items += "  scale T;\n";
+        (width, height) = (width.div_ceil(2), height.div_ceil(2));
+    }
+    if random.once_in(6) {
+        // The first row has the free cell.
+        let first = random.below(height);
+        items += &format!("  crop 0..{}, {first}..{};\n", width - 1, height - 1);
+        height -= first;
+    }
+    (items, width, height)
 }
 
 fn declared(vars: &[(String, Kind)]) -> String {

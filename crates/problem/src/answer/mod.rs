@@ -270,6 +270,10 @@ pub struct WitnessPath {
     /// actions decide the others.
     #[serde(default)]
     pub states: Vec<Ordered<Scalar>>,
+    /// Where each state is in the plane, `[x, y]`, where the system says so: in metres on a map that says how large its
+    /// cells are, and as given for the nodes of a graph. Passed over when reading.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub positions: Option<Vec<(f64, f64)>>,
 }
 
 /// The value of a variable.

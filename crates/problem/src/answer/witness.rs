@@ -125,6 +125,7 @@ pub fn to_witness(problem: &Problem, objective: &Objective, strategy: &Strategy)
             system: system.name.clone(),
             actions: trace.actions.iter().map(|&a| problem.actions[a].clone()).collect(),
             states: trace.states.iter().map(|s| write_state(system, s)).collect(),
+            positions: trace.states.iter().map(|s| system.position(s)).collect(),
         }
     };
     strategy.traces.iter().map(one).collect()
@@ -330,6 +331,7 @@ mod tests {
                 x: VarId(0),
                 y: VarId(0),
                 crash: Some(VarId(2)),
+                place: None,
             }),
             span,
         };

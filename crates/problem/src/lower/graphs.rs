@@ -3,8 +3,8 @@
 use super::base::Base;
 use super::diagnostics::suggest;
 use super::env::Env;
+use super::files::load_text;
 use super::json::{Kind, Piece};
-use super::maps::load_text;
 use crate::edges::{Edge, Edges};
 use crate::expr::{Comparison, Expr, Leaf, TupleSet, Type, Value};
 use crate::ids::{ActionId, VarId};

@@ -1,34 +1,48 @@
 //! Systems from maps: the items that only maps have, and the files that hold them.
 
 use super::base::Base;
+use super::changes::Changes;
 use super::consts::duplicate;
 use super::diagnostics::suggest;
 use super::env::Env;
-use super::grid::formats::is_picture;
-use super::grid::{self, Format, GridMap, Legend, MOVES, Meaning, Move, Row, Rule, Rules};
+use super::files::{load, text_of};
+use super::grid::{self, Format, GridMap, Legend, MOVES, Meaning, Move, Raster, Row, Rule, Rules, formats};
+use super::image::{self, Colors, color};
 use super::ros;
 use hyperplan_syntax::ast::{self, Ident, SystemItem, Text};
 use hyperplan_syntax::{Diagnostic, Span};
 use rustc_hash::FxHashMap;
+use std::hash::Hash;
 
 /// A map whose rows stand in the problem file.
 pub(super) fn inline(ast: &ast::System, rows: &[Text], env: &mut Env) -> Base {
     let lines: Vec<Row> =
         rows.iter().map(|row| Row { text: &row.text, span: row.span, verbatim: false }).collect();
     let whole = rows.iter().map(|row| row.span).reduce(Span::to).unwrap_or(ast.span);
-    let map = legend(ast, Format::Text, env)
+    let changes = Changes::of(ast, env);
+    let map = letters(ast, Format::Text, env)
         .and_then(|legend| grid::from_rows(&lines, Format::Text, &legend, whole, env.diagnostics));
+    let map = map.zip(changes).and_then(|(map, changes)| changes.apply(map, false, whole, env));
     finish(ast, map, env)
 }
 
-/// A map in a file of its own: text, a Moving AI benchmark, or a ROS map.
+/// A map in a file of its own: text, a Moving AI benchmark, a ROS map, or a picture.
 pub(super) fn file(ast: &ast::System, file: &Text, env: &mut Env) -> Base {
-    let map = read_file(ast, file, env);
+    let changes = Changes::of(ast, env);
+    let frees = changes.as_ref().is_some_and(Changes::frees_unknown);
+    let map = read_file(ast, file, frees, env).zip(changes);
+    let map = map.and_then(|((map, is_ros, whole), changes)| changes.apply(map, is_ros, whole, env));
     finish(ast, map, env)
 }
 
-fn read_file(ast: &ast::System, file: &Text, env: &mut Env) -> Option<GridMap> {
-    let text = load_text(file, "a map", env)?;
+/// The map, whether it is one of ROS, and its place; `None` after a message.
+fn read_file(ast: &ast::System, file: &Text, frees: bool, env: &mut Env) -> Option<(Raster, bool, Span)> {
+    let bytes = load(file, env)?;
+    if formats::is_png(&bytes) {
+        let legend = colors(ast, env)?;
+        return Some((image::read(file, &bytes, &legend, env)?, false, file.span));
+    }
+    let text = text_of(file, bytes, "a map", env)?;
     let lower = file.text.to_lowercase();
     if let Some((what, instead)) =
         OTHERS.iter().find_map(|(end, what, instead)| lower.ends_with(end).then_some((what, instead)))
@@ -40,15 +54,17 @@ fn read_file(ast: &ast::System, file: &Text, env: &mut Env) -> Option<GridMap> {
     let source = env.sources.add(file.text.clone(), text.as_str());
     if lower.ends_with(".yaml") || lower.ends_with(".yml") {
         // Pixels are no letters, but a legend for them is a mistake worth reporting.
-        legend(ast, Format::Text, env)?;
-        return ros::read(&file.text, file.span, source, &text, env);
+        letters(ast, Format::Text, env)?;
+        let map = ros::read((&file.text, file.span), source, &text, frees, env)?;
+        return Some((map, true, file.span));
     }
     let whole = Span::new(source, 0..text.len().min(1));
     let mut lines = lines(&text, source);
     if is_moving_ai(&lines) {
-        let legend = legend(ast, Format::MovingAi, env)?;
+        let legend = letters(ast, Format::MovingAi, env)?;
         let rows = moving_ai(&lines, env)?;
-        return grid::from_rows(rows, Format::MovingAi, &legend, whole, env.diagnostics);
+        let map = grid::from_rows(rows, Format::MovingAi, &legend, whole, env.diagnostics)?;
+        return Some((map, false, whole));
     }
     while lines.last().is_some_and(|row| row.text.is_empty()) {
         lines.pop();
@@ -57,38 +73,20 @@ fn read_file(ast: &ast::System, file: &Text, env: &mut Env) -> Option<GridMap> {
         let message = format!("the map file `{}` is empty", file.text);
         return env.diagnostics.refuse(Diagnostic::error("bad-map", file.span, message));
     }
-    let legend = legend(ast, Format::Text, env)?;
-    grid::from_rows(&lines, Format::Text, &legend, whole, env.diagnostics)
+    let legend = letters(ast, Format::Text, env)?;
+    let map = grid::from_rows(&lines, Format::Text, &legend, whole, env.diagnostics)?;
+    Some((map, false, whole))
 }
 
 /// Files that people name where a map is wanted: how they end, what they are, and what to give instead.
 const OTHERS: [(&str, &str, &str); 2] = [
-    (".scen", "a list of scenarios", "give the map that it is for, and cells of a scenario as labels"),
+    (
+        ".scen",
+        "a list of scenarios",
+        "give the map that it is for, and in braces `scenario \"FILE.scen\" N;` for start and goal",
+    ),
     (".json", "a graph", "write `graph(...)` in place of `grid(...)`"),
 ];
-
-/// The text of a file that the problem names, where `wanted` is expected; without a byte order mark.
-pub(super) fn load_text(file: &Text, wanted: &str, env: &mut Env) -> Option<String> {
-    let (path, span) = (&file.text, file.span);
-    let diagnostic = match env.loader.load(path) {
-        Ok(bytes) if is_picture(&bytes) => {
-            let message = format!("`{path}` is a picture, not {wanted}");
-            let help = "a map of ROS is given by the YAML file that names its picture: `grid(\"map.yaml\")`";
-            Diagnostic::error("not-text", span, message).with_help(help)
-        }
-        Ok(bytes) => match String::from_utf8(bytes) {
-            Ok(text) if !text.contains('\0') => {
-                return Some(text.strip_prefix('\u{feff}').map_or_else(|| text.clone(), str::to_owned));
-            }
-            _ => Diagnostic::error("not-text", span, format!("`{path}` is not a text file")),
-        },
-        Err(reason) => {
-            let help = "paths are relative to the problem file";
-            Diagnostic::error("cannot-read", span, format!("cannot read `{path}`: {reason}")).with_help(help)
-        }
-    };
-    env.diagnostics.refuse(diagnostic)
-}
 
 /// Whether lines begin with a header of the Moving AI Lab: it comes in several spellings.
 fn is_moving_ai(lines: &[Row<'_>]) -> bool {
@@ -174,46 +172,69 @@ fn sized(rows: &[Row], width: usize, height: usize, header: Span, env: &mut Env)
 }
 
 /// The system's parts; without a map after an error, what keeps the names known that every map has.
-fn finish(ast: &ast::System, map: Option<GridMap>, env: &mut Env) -> Base {
+fn finish(ast: &ast::System, map: Option<Raster>, env: &mut Env) -> Base {
     let rules = rules(ast, env);
     let failed = map.is_none();
-    let map = map.unwrap_or(GridMap { width: 1, height: 1, ..GridMap::default() });
+    let map = map.map_or(GridMap { width: 1, height: 1, ..GridMap::default() }, Raster::finish);
     let mut base = grid::base(&map, &rules, env.actions, ast.span);
     base.poisoned = failed;
     base
 }
 
-/// The `legend` items, or `None` after a message.
-fn legend(ast: &ast::System, format: Format, env: &mut Env) -> Option<Legend> {
-    let mut legend: Legend = Vec::new();
-    let mut places: FxHashMap<char, Span> = FxHashMap::default();
+/// What the `legend` items say of letters, or `None` after a message.
+fn letters(ast: &ast::System, format: Format, env: &mut Env) -> Option<Legend> {
+    legend(ast, env, |letter, env| {
+        let mut chars = letter.text.chars();
+        let wrong = match (chars.next(), chars.next()) {
+            (Some(c), None) if format.may_redefine(c) => return Some(c),
+            (Some(c), None) => {
+                let message = format!("the letter {c:?} has a meaning already");
+                let help = "in maps `.` and space are free, `#` and `@` obstacles, `S` start, `G` goal";
+                Diagnostic::error("reserved-name", letter.span, message).with_help(help)
+            }
+            _ if color(&letter.text).is_some() => {
+                let message = "the cells of this map are no colours: only pictures in PNG have some";
+                Diagnostic::error("bad-legend", letter.span, message)
+            }
+            _ => Diagnostic::error("bad-legend", letter.span, "expected a single letter"),
+        };
+        env.diagnostics.refuse(wrong)
+    })
+}
+
+/// What the `legend` items say of colours, or `None` after a message.
+fn colors(ast: &ast::System, env: &mut Env) -> Option<Colors> {
+    legend(ast, env, |letter, env| {
+        color(&letter.text).or_else(|| {
+            let message = "the cells of a picture are colours, no letters";
+            let wrong = Diagnostic::error("bad-legend", letter.span, message);
+            env.diagnostics.refuse(wrong.with_help("write `legend '#0000ff' = water;`"))
+        })
+    })
+}
+
+/// What each key that the `legend` items name stands for, or `None` after a message.
+fn legend<K: Copy + Eq + Hash>(
+    ast: &ast::System,
+    env: &mut Env,
+    key: impl Fn(&Text, &mut Env) -> Option<K>,
+) -> Option<Vec<(K, Meaning)>> {
+    let mut legend = Vec::new();
+    let mut places: FxHashMap<K, Span> = FxHashMap::default();
     let mut failed = false;
     for item in &ast.items {
         let SystemItem::Legend { letter, label, span } = item else { continue };
-        let mut chars = letter.text.chars();
-        let diagnostic = match (chars.next(), chars.next()) {
-            (Some(c), None) => match places.insert(c, *span) {
-                Some(first) => {
-                    Diagnostic::error("duplicate-name", *span, format!("a second legend for {c:?}"))
-                        .with_related(first, "the first one")
-                }
-                None if !format.may_redefine(c) => {
-                    let message = format!("the letter {c:?} has a meaning already");
-                    Diagnostic::error("reserved-name", letter.span, message).with_help(
-                        "in maps `.` and space are free, `#` and `@` obstacles, `S` start, `G` goal",
-                    )
-                }
-                None => {
-                    let meaning =
-                        label.as_ref().map_or(Meaning::Obstacle, |l| Meaning::Labelled(l.name.clone()));
-                    legend.push((c, meaning));
-                    continue;
-                }
-            },
-            _ => Diagnostic::error("bad-legend", letter.span, "expected a single letter"),
+        let Some(key) = key(letter, env) else {
+            failed = true;
+            continue;
         };
-        failed = true;
-        env.diagnostics.push(diagnostic);
+        if let Some(first) = places.insert(key, *span) {
+            let message = format!("a second legend for '{}'", letter.text);
+            let second = Diagnostic::error("duplicate-name", *span, message);
+            env.diagnostics.push(second.with_related(first, "the first one"));
+            failed = true;
+        }
+        legend.push((key, label.as_ref().map_or(Meaning::Obstacle, |l| Meaning::Labelled(l.name.clone()))));
     }
     (!failed).then_some(legend)
 }

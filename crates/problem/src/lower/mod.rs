@@ -5,16 +5,19 @@
 
 mod base;
 mod bodies;
+mod changes;
 mod clauses;
 mod consts;
 mod damage;
 mod diagnostics;
 mod env;
 mod expr;
+mod files;
 mod formula;
 mod fractions;
 mod graphs;
 mod grid;
+mod image;
 mod json;
 mod labels;
 mod limits;
@@ -24,6 +27,7 @@ mod objective;
 mod order;
 mod paths;
 mod ros;
+mod scenarios;
 mod semantics;
 mod sets;
 mod special;

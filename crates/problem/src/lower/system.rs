@@ -240,6 +240,10 @@ fn lower_item(
         SystemItem::Obstacle(name) => only_maps(cx, kind, "obstacle", Some(name)),
         SystemItem::Edge(name) => only_maps(cx, kind, "edge", Some(name)),
         SystemItem::Corner(name) => only_maps(cx, kind, "corner", Some(name)),
+        SystemItem::Map { item, span } => {
+            let name = Ident { name: item.word().to_owned(), span: *span };
+            only_maps(cx, kind, item.word(), Some(&name));
+        }
         SystemItem::Legend { letter, span, .. } => {
             let name = Ident { name: letter.text.clone(), span: *span };
             only_maps(cx, kind, "legend", Some(&name));

@@ -132,6 +132,7 @@ impl<'a> Uses<'a> {
             }
             SystemItem::Init(e) | SystemItem::Label(_, e) | SystemItem::Absorb(e) => self.exprs([e]),
             SystemItem::Observe(es) => self.exprs(es),
+            SystemItem::Map { item, .. } => self.exprs(item.exprs()),
             _ => {}
         }
     }

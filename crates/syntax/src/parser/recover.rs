@@ -12,7 +12,7 @@ pub(super) const TOP: &[&str] = &["const", "system", "template", "define", "obje
 /// Words that begin an item of a system.
 pub(super) const ITEMS: &[&str] = &[
     "state", "action", "on", "init", "label", "observe", "absorb", "moves", "obstacle", "edge", "corner",
-    "legend",
+    "legend", "scenario", "unknown", "inflate", "scale", "crop",
 ];
 
 /// What a block holds, and so where its next member begins.
@@ -42,7 +42,9 @@ impl Parser<'_> {
             }
             Block::System => {
                 let begins = matches!(next, Tok::LBracket | Tok::LParen | Tok::Assign | EQUALS);
-                let expression = matches!(token.text, "init" | "observe" | "absorb") && next == Tok::LParen;
+                let expression =
+                    matches!(token.text, "init" | "observe" | "absorb" | "inflate" | "scale" | "crop")
+                        && next == Tok::LParen;
                 let misspelt = || next == Tok::Ident && self.begins_misspelt(ITEMS);
                 ITEMS.contains(&token.text) && (!begins || expression) || misspelt()
             }

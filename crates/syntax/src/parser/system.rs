@@ -125,6 +125,12 @@ impl Parser<'_> {
                 self.equals()?;
                 SystemItem::Label(name, self.expr()?)
             }
+            "scenario" | "unknown" | "inflate" | "scale" | "crop" => {
+                let (item, expected) = self.map_item(word)?;
+                let span = self.since(start.span);
+                self.semicolon(Block::System, &format!("`{word}`"), expected)?;
+                return Ok(Some(SystemItem::Map { item: Box::new(item), span }));
+            }
             _ => {
                 let (letter, label) = self.legend()?;
                 SystemItem::Legend { letter, label, span: self.since(start.span) }
@@ -145,7 +151,10 @@ impl Parser<'_> {
     fn legend(&mut self) -> Parse<(Text, Option<Ident>)> {
         let token = self.token();
         if token.tok != Tok::Char {
-            let help = "write `legend 'W' = water;`, or `legend 'W' = #;` for an obstacle";
+            let help = match token.text.starts_with('"') {
+                true => "write `legend 'W' = water;`, and of a picture `legend '#0000ff' = water;`",
+                false => "write `legend 'W' = water;`, or `legend 'W' = #;` for an obstacle",
+            };
             return self.fail_with("a letter in quotes", Some(help.to_owned()));
         }
         self.bump();

@@ -62,9 +62,9 @@ impl Printer<'_> {
     /// Where the item's word stands.
     fn item_start(&self, item: &SystemItem) -> usize {
         let behind = match item {
-            SystemItem::On(Clause { span, .. }) | SystemItem::Legend { span, .. } => {
-                return span.start as usize;
-            }
+            SystemItem::On(Clause { span, .. })
+            | SystemItem::Legend { span, .. }
+            | SystemItem::Map { span, .. } => return span.start as usize,
             SystemItem::State(decls) => decls.first().map(|decl| decl.name.span),
             SystemItem::Action(names) | SystemItem::Moves(names) => names.first().map(|name| name.span),
             SystemItem::Init(e) | SystemItem::Absorb(e) => Some(e.span),
@@ -97,6 +97,7 @@ impl Printer<'_> {
             SystemItem::Obstacle(rule) => self.named("obstacle ", std::slice::from_ref(rule)),
             SystemItem::Edge(rule) => self.named("edge ", std::slice::from_ref(rule)),
             SystemItem::Corner(rule) => self.named("corner ", std::slice::from_ref(rule)),
+            SystemItem::Map { item, .. } => self.map_item(item),
             SystemItem::Legend { letter, label, span } => {
                 let label = label.as_ref().map_or("#", |label| &label.name);
                 self.layout.text(format!("legend '{}' = {label}", letter.text));

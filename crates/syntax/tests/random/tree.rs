@@ -2,9 +2,9 @@
 
 use hyperplan_random::Random;
 use hyperplan_syntax::ast::{
-    ArithOp, BinaryOp, Clause, CompareOp, Const, Define, Expr, ExprKind, File, Formula, Ident, Interval,
-    Item, Objective, ObjectiveBody, Quantifier, Set, StateDecl, System, SystemItem, SystemKind, Template,
-    Text, Type, UnaryOp, Update, UpdateValue,
+    Area, ArithOp, BinaryOp, Clause, CompareOp, Const, Define, Expr, ExprKind, File, Formula, Ident,
+    Interval, Item, MapItem, Objective, ObjectiveBody, Quantifier, Set, StateDecl, System, SystemItem,
+    SystemKind, Template, Text, Type, UnaryOp, Update, UpdateValue,
 };
 use hyperplan_syntax::{SourceId, Span};
 
@@ -123,7 +123,7 @@ fn system(random: &mut Random) -> System {
 }
 
 fn system_item(random: &mut Random) -> SystemItem {
-    match random.below(11) {
+    match random.below(16) {
         0 => SystemItem::State((0..1 + random.below(3)).map(|_| state(random)).collect()),
         1 => SystemItem::Action(idents(random, 1)),
         2 => SystemItem::On(clause(random)),
@@ -134,11 +134,33 @@ fn system_item(random: &mut Random) -> SystemItem {
         7 => SystemItem::Moves(idents(random, 1)),
         8 => SystemItem::Obstacle(ident(random)),
         9 => SystemItem::Edge(ident(random)),
+        10..=14 => SystemItem::Map { item: Box::new(map_item(random)), span: NOWHERE },
         _ => SystemItem::Legend {
-            letter: Text { text: random.one(&["W", "é", " ", "\""]).to_owned(), span: NOWHERE },
+            letter: Text {
+                text: random.one(&["W", "é", " ", "\"", "#", "#0000ff", "#00Ff0080"]).to_owned(),
+                span: NOWHERE,
+            },
             label: random.flip().then(|| ident(random)),
             span: NOWHERE,
         },
+    }
+}
+
+fn map_item(random: &mut Random) -> MapItem {
+    match random.below(5) {
+        0 => MapItem::Scenario { file: text(random), row: expr(random, 2) },
+        1 => MapItem::Unknown(ident(random)),
+        // Before a word, some names are read as operators.
+        2 if random.flip() => {
+            let by = Expr { kind: ExprKind::Number("0.5".to_owned()), span: NOWHERE };
+            MapItem::Inflate { by, metres: Some(NOWHERE) }
+        }
+        2 => MapItem::Inflate { by: expr(random, 2), metres: None },
+        3 => MapItem::Scale(expr(random, 2)),
+        _ => MapItem::Crop(Box::new(Area {
+            x: (expr(random, 2), expr(random, 2)),
+            y: (expr(random, 2), expr(random, 2)),
+        })),
     }
 }
 

@@ -9,6 +9,11 @@ pub(crate) fn is_picture(bytes: &[u8]) -> bool {
     netpbm || [&b"\x89PNG"[..], b"\xff\xd8\xff", b"GIF8", b"BM"].iter().any(|magic| bytes.starts_with(magic))
 }
 
+/// Whether the bytes begin like a PNG picture.
+pub(crate) fn is_png(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"\x89PNG")
+}
+
 /// Reads a picture of at most so many pixels.
 ///
 /// # Errors

@@ -5,21 +5,28 @@ mod moves;
 mod pgm;
 pub(crate) mod picture;
 mod png;
+mod raster;
 mod rows;
 mod system;
 
 pub(crate) use moves::{MOVES, Move, Rule};
-pub(crate) use rows::{Format, Legend, Meaning, Row, from_rows};
+pub(crate) use raster::{Occupancy, Raster};
+pub(crate) use rows::{Format, Legend, Meaning, Row, from_rows, labelled};
 pub(crate) use system::{Rules, base};
 
-/// Most cells that a map may have.
+use crate::place::Place;
+
+/// Most cells that a map may have in a problem.
 pub(crate) const MAX_CELLS: usize = 4_000_000;
+
+/// Most cells of a file that is read, to be cut or made coarser.
+pub(crate) const MAX_READ: usize = 1 << 25;
 
 /// A cell: column from the left, row from the bottom.
 pub(crate) type Cell = (u32, u32);
 
-/// A map as read, in the convention of the language: the last text line is row 0.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+/// A map as a system is made of it, in the convention of the language: the last text line is row 0.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct GridMap {
     pub(crate) width: u32,
     pub(crate) height: u32,
@@ -27,14 +34,16 @@ pub(crate) struct GridMap {
     pub(crate) obstacles: Vec<Cell>,
     /// Labels that letters carry, in order of first mention.
     pub(crate) labels: Vec<Lettered>,
+    /// Where it lies, if that was said.
+    pub(crate) place: Option<Place>,
 }
 
-/// A label that a letter carries.
+/// A label of some cells.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Lettered {
     pub(crate) name: String,
-    /// The first of its letters.
-    pub(crate) letter: char,
+    /// The first of the letters that stand for it, where letters do.
+    pub(crate) letter: Option<char>,
     /// Sorted.
     pub(crate) cells: Vec<Cell>,
 }

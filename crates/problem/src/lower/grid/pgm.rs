@@ -1,7 +1,7 @@
 //! PGM pictures, plain (`P2`) and raw (`P5`), read whole: what is left over or missing shifts pixels, or was never
 //! meant to be one, so it is refused. Libraries for the format leave it alone.
 
-use super::picture::Picture;
+use super::picture::{Picture, Pixels};
 
 /// Reads a picture of at most so many pixels; the first two bytes have said that it is one.
 pub(super) fn read(bytes: &[u8], most: usize) -> Result<Picture, String> {
@@ -21,7 +21,7 @@ pub(super) fn read(bytes: &[u8], most: usize) -> Result<Picture, String> {
     if shades.iter().any(|shade| *shade > white) {
         return Err(format!("a shade is above the greatest one, {white}"));
     }
-    Ok(Picture { width, height, white, shades })
+    Ok(Picture { width, height, pixels: Pixels::Gray(shades, white) })
 }
 
 struct Reader<'a> {

@@ -1,6 +1,6 @@
 //! From rows of letters to a map.
 
-use super::{Cell, GridMap, Lettered, MAX_CELLS};
+use super::{Cell, Lettered, MAX_READ, Occupancy, Raster};
 use crate::lower::Diagnostics;
 use hyperplan_syntax::{Diagnostic, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -68,37 +68,34 @@ pub(crate) fn from_rows(
     legend: &Legend,
     whole: Span,
     diagnostics: &mut Diagnostics,
-) -> Option<GridMap> {
+) -> Option<Raster> {
     let width = rectangle(rows, whole, diagnostics)?;
     let height = rows.len();
-    let mut reader = Reader { format, legend: legend.iter().cloned().collect(), ..Reader::default() };
+    let mut reader = Reader {
+        format,
+        legend: legend.iter().cloned().collect(),
+        ascii: [None; 128],
+        map: Raster::new(number(width), number(height)),
+        unknown: FxHashSet::default(),
+        failed: false,
+    };
     // Labels of the legend exist even where no cell carries them; `start` and `goal` only where a letter says so.
     for (letter, meaning) in legend {
         if let Meaning::Labelled(label) = meaning {
-            reader.label(label, *letter);
+            labelled(&mut reader.map.labels, label, Some(*letter));
         }
     }
     for (index, row) in rows.iter().enumerate() {
         let y = number(height - 1 - index);
         for (x, (offset, letter)) in row.text.char_indices().enumerate() {
-            reader.cell(letter, (number(x), y), || place(row, offset, letter), diagnostics);
+            match reader.meaning(letter) {
+                Some(what) => reader.cell(what, (number(x), y)),
+                None => reader.refuse(letter, || place(row, offset, letter), diagnostics),
+            }
         }
     }
-    let mut map = GridMap {
-        width: number(width),
-        height: number(height),
-        obstacles: reader.obstacles,
-        labels: reader.labels,
-    };
-    if reader.failed {
-        return None;
-    }
-    map.obstacles.sort_unstable();
+    let Reader { mut map, failed: false, .. } = reader else { return None };
     map.labels.iter_mut().for_each(|label| label.cells.sort_unstable());
-    if map.obstacles.len() == width * height {
-        diagnostics.push(Diagnostic::error("bad-map", whole, "the map has no free cell"));
-        return None;
-    }
     Some(map)
 }
 
@@ -122,8 +119,8 @@ fn rectangle(rows: &[Row], whole: Span, diagnostics: &mut Diagnostics) -> Option
         diagnostics.push(Diagnostic::error("bad-map", whole, "the map is empty"));
         return None;
     }
-    if width.saturating_mul(rows.len()) > MAX_CELLS {
-        let message = format!("the map has more than {MAX_CELLS} cells");
+    if width.saturating_mul(rows.len()) > MAX_READ {
+        let message = format!("the map has more than {MAX_READ} cells");
         diagnostics.push(Diagnostic::error("bad-map", whole, message));
         return None;
     }
@@ -138,45 +135,66 @@ fn rectangle(rows: &[Row], whole: Span, diagnostics: &mut Diagnostics) -> Option
     even.then_some(width)
 }
 
+/// The position of a label among others, new or known.
+pub(crate) fn labelled(labels: &mut Vec<Lettered>, name: &str, letter: Option<char>) -> usize {
+    if let Some(index) = labels.iter().position(|label| label.name == name) {
+        return index;
+    }
+    labels.push(Lettered { name: name.to_owned(), letter, cells: Vec::new() });
+    labels.len() - 1
+}
+
+/// What a letter was found to stand for: something without a label, or a label by its position.
+#[derive(Clone, Copy)]
+enum Found {
+    Plain(Occupancy),
+    Label(usize),
+}
+
 /// The map while its cells are read.
-#[derive(Default)]
 struct Reader {
     format: Format,
     legend: FxHashMap<char, Meaning>,
-    obstacles: Vec<Cell>,
-    labels: Vec<Lettered>,
+    /// What the letters that most maps consist of were found to be.
+    ascii: [Option<Found>; 128],
+    map: Raster,
     unknown: FxHashSet<char>,
     failed: bool,
 }
 
 impl Reader {
-    /// The position of a label, new or known.
-    fn label(&mut self, name: &str, letter: char) -> usize {
-        if let Some(index) = self.labels.iter().position(|label| label.name == name) {
-            return index;
+    fn meaning(&mut self, letter: char) -> Option<Found> {
+        if let Some(Some(found)) = self.ascii.get(letter as usize) {
+            return Some(*found);
         }
-        self.labels.push(Lettered { name: name.to_owned(), letter, cells: Vec::new() });
-        self.labels.len() - 1
+        let meaning = self.legend.get(&letter).cloned().or_else(|| self.format.meaning(letter))?;
+        let found = match meaning {
+            Meaning::Free => Found::Plain(Occupancy::Free),
+            Meaning::Obstacle => Found::Plain(Occupancy::Obstacle),
+            Meaning::Labelled(label) => Found::Label(labelled(&mut self.map.labels, &label, Some(letter))),
+        };
+        if let Some(known) = self.ascii.get_mut(letter as usize) {
+            *known = Some(found);
+        }
+        Some(found)
     }
 
-    fn cell(&mut self, letter: char, cell: Cell, place: impl Fn() -> Span, diagnostics: &mut Diagnostics) {
-        let meaning = self.legend.get(&letter).cloned().or_else(|| self.format.meaning(letter));
-        match meaning {
-            Some(Meaning::Free) => {}
-            Some(Meaning::Obstacle) => self.obstacles.push(cell),
-            Some(Meaning::Labelled(label)) => {
-                let index = self.label(&label, letter);
-                self.labels[index].cells.push(cell);
+    fn cell(&mut self, what: Found, cell: Cell) {
+        match what {
+            Found::Plain(what) => {
+                let at = self.map.index(cell);
+                self.map.cells[at] = what;
             }
-            None => {
-                self.failed = true;
-                if self.unknown.len() < 5 && self.unknown.insert(letter) {
-                    let message = format!("the letter {letter:?} has no meaning in a map");
-                    let help =
-                        format!("say what it is: `legend {letter:?} = NAME;` or `legend {letter:?} = #;`");
-                    diagnostics.push(Diagnostic::error("unknown-letter", place(), message).with_help(help));
-                }
-            }
+            Found::Label(index) => self.map.labels[index].cells.push(cell),
+        }
+    }
+
+    fn refuse(&mut self, letter: char, place: impl Fn() -> Span, diagnostics: &mut Diagnostics) {
+        self.failed = true;
+        if self.unknown.len() < 5 && self.unknown.insert(letter) {
+            let message = format!("the letter {letter:?} has no meaning in a map");
+            let help = format!("say what it is: `legend {letter:?} = NAME;` or `legend {letter:?} = #;`");
+            diagnostics.push(Diagnostic::error("unknown-letter", place(), message).with_help(help));
         }
     }
 }

@@ -134,10 +134,15 @@ pub(crate) fn base(map: &GridMap, rules: &Rules, actions: &mut Actions, span: Sp
             width: map.width,
             height: map.height,
             obstacles: map.obstacles.clone(),
-            letters: map.labels.iter().map(|label| (label.name.clone(), label.letter)).collect(),
+            letters: map
+                .labels
+                .iter()
+                .filter_map(|label| Some((label.name.clone(), label.letter?)))
+                .collect(),
             x: X,
             y: Y,
             crash: can_crash.then_some(CRASH),
+            place: map.place,
         }),
         poisoned: false,
     }

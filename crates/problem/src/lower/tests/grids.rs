@@ -256,11 +256,17 @@ fn ros_maps() {
     // The top picture row is y = 1; gray is unknown, and so an obstacle.
     assert_eq!((map.width, map.height, map.obstacles), (3, 2, vec![(1, 1), (2, 0)]));
     let raw = crate::lower::grid::formats::read(b"P5 2 1 255\n\x00\xff", 10).expect("a picture");
-    assert_eq!((raw.at(0, 0), raw.at(1, 0)), (0, 255));
+    assert_eq!(shades(&raw), [0, 255]);
     for bad in [&b"P5 2 1 255\n\x00"[..], b"P5 2", b"P6 1 1 255\n000", b"P2 1 1 255\n256", b"", b"P2 9 9 9 9"]
     {
         assert!(crate::lower::grid::formats::read(bad, 10).is_err());
     }
+}
+
+/// How bright the pixels of a picture are, of 255, from the top.
+fn shades(picture: &crate::lower::grid::picture::Picture) -> Vec<u16> {
+    let pixels = (0..picture.height).flat_map(|row| (0..picture.width).map(move |x| (x, row)));
+    pixels.map(|(x, row)| (picture.brightness(x, row, true) * 255.0).round() as u16).collect()
 }
 
 /// What the map of a YAML file and a plain picture is, or the messages.
@@ -304,7 +310,13 @@ fn ros_settings_in_every_style() {
         "image: room.pgm\noccupied_thresh: -0.1",
         "image: room.pgm\noccupied_thresh: .nan",
         "image: room.pgm\nfree_thresh: 0.7",
-        "image: room.pgm\nmode: raw",
+        "image: room.pgm\nmode: grey",
+        "image: room.pgm\nresolution: 0",
+        "image: room.pgm\nresolution: -0.05",
+        "image: room.pgm\nresolution: .nan",
+        "image: room.pgm\nresolution: .inf",
+        "image: room.pgm\nresolution: 0.05\norigin: [0, 0]",
+        "image: room.pgm\nresolution: 0.05\norigin: [0, .nan, 0]",
         "image: room.pgm\nimage: other.pgm",
         "image: room.pgm\n  bad: [",
     ] {
@@ -336,13 +348,12 @@ fn pictures_are_never_shifted() {
             match crate::lower::grid::formats::read(&bytes, 100) {
                 // A line end of two bytes is one white space only where the sizes say so.
                 Ok(picture) if extra == 0 && cut == 0 => {
-                    let shades = pixels.map(u16::from);
-                    assert_eq!(picture.shades, shades, "{a:?} {b:?} {c:?}");
+                    assert_eq!(shades(&picture), pixels.map(u16::from), "{a:?} {b:?} {c:?}");
                     read += 1;
                 }
                 Ok(picture) => {
                     // One byte less after a line end of two: it was one byte of white space, and a pixel.
-                    assert!(c == "\r\n" && cut == 1 && picture.shades[0] == 10, "{a:?} {b:?} {c:?}");
+                    assert!(c == "\r\n" && cut == 1 && shades(&picture)[0] == 10, "{a:?} {b:?} {c:?}");
                 }
                 Err(_) => refused += 1,
             }
@@ -370,8 +381,8 @@ fn png_pictures() {
         (encoded(png::ColorType::Rgba, eight, &[0, 0, 0, 0, 255, 255, 255, 255]), [0, 255]),
     ] {
         let picture = crate::lower::grid::formats::read(&bytes, 100).expect("a picture");
-        assert_eq!((picture.width, picture.height, picture.white), (2, 1, 255));
-        assert_eq!(picture.shades, shades);
+        assert_eq!((picture.width, picture.height), (2, 1));
+        assert_eq!(self::shades(&picture), shades);
         for end in 0..bytes.len() - 12 {
             assert!(crate::lower::grid::formats::read(&bytes[..end], 100).is_err(), "cut after {end} bytes");
         }

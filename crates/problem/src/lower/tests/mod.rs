@@ -1,3 +1,4 @@
+mod changes;
 mod display;
 mod graphs;
 mod grids;
