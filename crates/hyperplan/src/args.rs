@@ -49,6 +49,23 @@ pub(crate) enum Format {
     Json,
 }
 
+/// How `solve` prints what it finds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SolveFormat {
+    #[default]
+    Text,
+    /// One JSON object a line
+    Json,
+    /// A table with commas: a row a step, with the action taken there
+    Csv,
+    /// `nav_msgs/Path` messages as YAML
+    Ros,
+    /// A line for each path, with its actions and states
+    Geojson,
+    /// Actions as VAL reads them
+    Pddl,
+}
+
 /// A problem file and how to read it.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct Problem {
@@ -154,8 +171,9 @@ pub(crate) struct Solve {
     pub(crate) problem: Problem,
     #[command(flatten)]
     pub(crate) selection: Selection,
-    #[command(flatten)]
-    pub(crate) output: Output,
+    /// How the answer is printed; `csv`, `ros`, `geojson` and `pddl`: the strategy alone, for other programs
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = SolveFormat::Text)]
+    pub(crate) format: SolveFormat,
     #[command(flatten)]
     pub(crate) encoding: Encoding,
     /// `builtin`, `cadical`, `batsat`, `z3`, `cvc5`, `yices`, `bitwuzla`, a name in hyperplan.toml, or a command line;
@@ -175,8 +193,9 @@ pub(crate) struct Solve {
     /// Draws the map with the paths into an .svg (or .txt) file
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
-    /// Saves the answer as JSON
-    #[arg(long, value_name = "FILE.json")]
+    /// Saves the answer as JSON; into a .csv, .yaml (ROS), .geojson or .plan (PDDL) file the strategy in that format, of
+    /// several paths each in a file of its own, FILE-PATH.csv
+    #[arg(long, value_name = "FILE")]
     pub(crate) save: Option<PathBuf>,
     /// Keeps every query sent to the solver, with its replies as comments
     #[arg(long, value_name = "DIR")]
@@ -377,9 +396,10 @@ pub(crate) struct Verify {
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 pub(crate) struct Plan {
-    /// A strategy, as `solve --save` and `solve --format json` write it; `-` is standard input
-    #[arg(value_name = "STRATEGY.json")]
-    pub(crate) strategy: Option<PathBuf>,
+    /// A strategy, as `solve --save` and `solve --format json|csv|geojson|pddl` write it, or the files with its paths; `-` is
+    /// standard input
+    #[arg(value_name = "STRATEGY")]
+    pub(crate) strategy: Vec<PathBuf>,
     /// A strategy by its actions, `p=up,up,right`, once for each path; the states follow from them
     #[arg(long, value_name = "PATH=ACTION,...", value_parser = path_of_actions)]
     pub(crate) actions: Vec<WitnessPath>,

@@ -5,7 +5,7 @@ use crate::failure::{Failure, Result};
 use crate::files::{self, read_bytes, read_source, reason};
 use crate::output::Output;
 use crate::report;
-use hyperplan_problem::answer::{StrategyFile, to_strategy};
+use hyperplan_problem::answer::{StrategyFile, plans, to_strategy};
 use hyperplan_problem::{Loader, Lowered, Objective, Overrides, Problem, Strategy, Value, lower, read};
 use hyperplan_syntax::{SourceMap, Span, ast};
 use hyperplan_verify::{Budget, complete};
@@ -138,8 +138,10 @@ pub(crate) struct Given {
 impl Given {
     /// What the user gave, if anything.
     pub(crate) fn of(plan: &args::Plan) -> Result<Option<Given>> {
-        if let Some(file) = &plan.strategy {
-            return Given::read(file).map(Some);
+        match plan.strategy.as_slice() {
+            [] => {}
+            [file] => return Given::read(file).map(Some),
+            files => return Given::together(files).map(Some),
         }
         let answer = StrategyFile { objective: None, verdict: None, witness: Some(plan.actions.clone()) };
         let given = Given { name: "--actions".to_owned(), answers: vec![answer] };
@@ -149,12 +151,38 @@ impl Given {
     /// Reads a strategy file.
     fn read(path: &Path) -> Result<Given> {
         let name = files::name(path);
-        let answers = StrategyFile::read_all(&read_source(path)?)
+        let answers = plans::read(&read_source(path)?)
             .map_err(|e| Failure::input(format_args!("{name} is no strategy: {e}; {DESCRIBED}")))?;
         if answers.is_empty() {
             return Err(Failure::input(format_args!("{name} is no strategy: it is empty; {DESCRIBED}")));
         }
         Ok(Given { name, answers })
+    }
+
+    /// Reads the files with the paths of one strategy.
+    fn together(paths: &[PathBuf]) -> Result<Given> {
+        let mut all = Given { name: String::new(), answers: Vec::new() };
+        let mut whole = StrategyFile { objective: None, verdict: None, witness: None };
+        for path in paths {
+            let Given { name, answers } = Given::read(path)?;
+            let [one] = answers.as_slice() else {
+                let message =
+                    format!("{name} has several strategies: of several files each gives paths of one");
+                return Err(Failure::input(message));
+            };
+            if all.name.is_empty() {
+                all.name = name;
+            } else {
+                all.name = format!("{}, {name}", all.name);
+            }
+            if whole.objective.is_some() && one.objective.is_some() && whole.objective != one.objective {
+                return Err(Failure::input(format_args!("{} are for different objectives", all.name)));
+            }
+            whole.objective = whole.objective.or_else(|| one.objective.clone());
+            whole.witness.get_or_insert_default().extend(one.witness.clone().unwrap_or_default());
+        }
+        all.answers.push(whole);
+        Ok(all)
     }
 
     /// The strategies of the file that are meant, each with its objective.
@@ -180,8 +208,9 @@ impl Given {
                 return Err(failure(format!("there is no witness for objective {}", objective.name)));
             };
             let problem = &loaded.problem;
+            let witness = plans::meant(problem, objective, witness);
             let mut strategy =
-                to_strategy(problem, objective, witness).map_err(|e| failure(e.to_string()))?;
+                to_strategy(problem, objective, &witness).map_err(|e| failure(e.to_string()))?;
             complete(problem, objective, &mut strategy, &Budget::default())
                 .map_err(|open| failure(open.describe(problem, objective)))?;
             found.push((objective, strategy));

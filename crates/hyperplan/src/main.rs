@@ -12,6 +12,7 @@ mod instances;
 mod load;
 mod output;
 mod parameter;
+mod plans;
 mod progress;
 mod report;
 mod signals;

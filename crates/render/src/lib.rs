@@ -12,7 +12,7 @@ mod text;
 
 pub use board::{Board, Mark};
 pub use drawing::svg;
-pub use table::{actions_line, table};
+pub use table::{actions_line, steps_to_rest, table};
 pub use text::{TextStyle, text_map};
 
 use hyperplan_problem::{Objective, Problem, SystemId, Trace};

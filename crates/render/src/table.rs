@@ -54,14 +54,23 @@ fn in_words(ty: &Type, value: Value) -> String {
     }
 }
 
+/// How many steps a trace takes until it is in a state that absorbs, if it ever is.
+#[must_use]
+pub fn steps_to_rest(problem: &Problem, objective: &Objective, trace: &Trace) -> usize {
+    let Some(path) = objective.paths.get(trace.path) else { return trace.actions.len() };
+    let system = &problem.systems[path.system];
+    let rest = trace.states.iter().position(|state| is_absorbing(system, state));
+    rest.unwrap_or(trace.actions.len()).min(trace.actions.len())
+}
+
 /// The actions of a trace on one line, repetitions counted: `right, up x3, stay`. Actions that an absorbing state
 /// makes idle are only counted.
 #[must_use]
 pub fn actions_line(problem: &Problem, objective: &Objective, trace: &Trace) -> String {
-    let Some(path) = objective.paths.get(trace.path) else { return String::new() };
-    let system = &problem.systems[path.system];
-    let moved = trace.states.iter().position(|s| is_absorbing(system, s)).unwrap_or(trace.actions.len());
-    let moved = moved.min(trace.actions.len());
+    if objective.paths.get(trace.path).is_none() {
+        return String::new();
+    }
+    let moved = steps_to_rest(problem, objective, trace);
     let mut runs: Vec<(usize, &str)> = Vec::new();
     for action in &trace.actions[..moved] {
         let name = problem.actions[*action].as_str();

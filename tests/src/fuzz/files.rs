@@ -1,6 +1,7 @@
 //! The files that problems name, and strategies.
 
 use super::problem::{Files, lowered};
+use hyperplan_problem::answer::plans::{self, PlanFormat, meant};
 use hyperplan_problem::answer::{StrategyFile, to_strategy, to_witness};
 use hyperplan_problem::{Lowered, Map, Problem};
 use hyperplan_verify::{Budget, check};
@@ -158,6 +159,15 @@ pub(super) const JSON_PIECES: &[&str] = &[
     "\"crash\": true",
     "{}",
     "[]",
+    "time,path,action,",
+    "0,p,",
+    ",x,y",
+    "\"type\": \"FeatureCollection\"",
+    "\"features\": []",
+    "\"properties\"",
+    "; path p\n",
+    "(up)\n",
+    "0: (up p)\n",
 ];
 
 /// A problem on a system that is read from a file, and what it means.
@@ -271,12 +281,22 @@ pub(super) fn graph(data: &[u8]) {
 /// A strategy: what fits the problem survives being written and read again, and the checker can judge it.
 pub(super) fn strategy(data: &[u8]) {
     let Ok(text) = str::from_utf8(data) else { return };
-    let Ok(files) = StrategyFile::read_all(text) else { return };
+    let Ok(files) = plans::read(text) else { return };
     let problem = problem();
     for objective in &problem.objectives {
         for witness in files.iter().filter_map(|file| file.witness.as_deref()) {
-            let Ok(strategy) = to_strategy(problem, objective, witness) else { continue };
+            let witness = meant(problem, objective, witness);
+            let Ok(strategy) = to_strategy(problem, objective, &witness) else { continue };
             let written = to_witness(problem, objective, &strategy);
+            // A path that has actions and no states yet is no table.
+            let whole = strategy.traces.iter().all(|trace| trace.states.len() == trace.actions.len() + 1);
+            for format in [PlanFormat::Csv, PlanFormat::Geojson].into_iter().filter(|_| whole) {
+                let text = format.write(&objective.name, &written).expect("it can be written");
+                let again = plans::read(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+                let again = again[0].witness.as_deref().expect("it was written");
+                assert_eq!(to_strategy(problem, objective, again), Ok(strategy.clone()), "{text}");
+            }
+            let _ = PlanFormat::Pddl.write(&objective.name, &written).map(|text| plans::read(&text));
             let json = serde_json::json!({ "witness": written }).to_string();
             let again = StrategyFile::read_all(&json).expect("what was written can be read");
             let again = again[0].witness.as_deref().expect("it was written");

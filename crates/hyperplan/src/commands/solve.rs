@@ -1,6 +1,6 @@
 //! `hyperplan solve`: from a problem file to a verified strategy.
 
-use crate::args::{self, Format};
+use crate::args::{self, SolveFormat};
 use crate::config;
 use crate::explain::{Explain, Why};
 use crate::failure::{Exit, Failure, Result};
@@ -9,14 +9,18 @@ use crate::guard;
 use crate::load::Loaded;
 use crate::output::Output;
 use crate::parameter::{Parameter, Searched};
+use crate::plans;
 use crate::report::{Picture, json, write_picture};
 use hyperplan_outlet::one_line;
 use hyperplan_plan::{self as plan, MinimizeError};
+use hyperplan_problem::answer::plans::PlanFormat;
 use hyperplan_problem::answer::{
-    Answer, Below, Failed, Ordered, ReasonCode, Seconds, Size, Solver, Verdict, Verified, to_witness,
+    Answer, Below, Failed, Ordered, ReasonCode, Seconds, Size, Solver, Verdict, Verified, WitnessPath,
+    to_witness,
 };
 use hyperplan_problem::{Objective, Quantifier, Strategy, Trace};
 use hyperplan_render::{Board, Scene, TextStyle, actions_line, can_draw, table, text_map};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Larger maps are left to `--plot`.
@@ -37,6 +41,12 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
     let explain = Explain { queries: config.plan.queries.as_deref() };
     let objectives = loaded.selected(args.selection.objective.as_deref(), false)?;
     let pictures = pictures(&config, &loaded, &objectives, out)?;
+    let several = objectives.len() > 1;
+    if several && plan_format(args.format).is_some() {
+        let message = "--format csv, ros, geojson and pddl print the strategy of one objective; choose it by --objective NAME, or \
+                       --save FILE with such an ending for a file each";
+        return Err(Failure::input(message));
+    }
     let mut worst = Exit::Good;
     let mut found_so_far = String::new();
     let (mut saved, mut drawn) = (Ok(()), Ok(()));
@@ -71,13 +81,19 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
         let found = Found { loaded, objective, outcome: &outcome, answer: &answer, searched };
         if let Some(path) = &config.save {
             // Before anything else that may fail.
-            found_so_far += &(json(&answer)? + "\n");
-            saved = write_bytes(path, found_so_far.as_bytes());
+            saved = match PlanFormat::of_file(path) {
+                None => {
+                    found_so_far += &(json(&answer)? + "\n");
+                    write_bytes(path, found_so_far.as_bytes())
+                }
+                Some(format) => saved.and(found.save(format, path, several)),
+            };
         }
-        match args.output.format {
-            Format::Json => out.line(json(&answer)?)?,
-            Format::Text if quiet => out.line(found.verdict_line())?,
-            Format::Text => {
+        match (plan_format(args.format), args.format) {
+            (Some(format), _) => found.print(format, out)?,
+            (None, SolveFormat::Json) => out.line(json(&answer)?)?,
+            (None, _) if quiet => out.line(found.verdict_line())?,
+            (None, _) => {
                 let text = found.text(verbose, out.color);
                 out.write(|w| if index > 0 { writeln!(w) } else { Ok(()) })?;
                 out.line(text.trim_end())?;
@@ -94,6 +110,17 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
         worst = worst.max(failure.status);
     }
     Ok(worst)
+}
+
+/// The format of strategies for other programs, if it is one.
+fn plan_format(format: SolveFormat) -> Option<PlanFormat> {
+    match format {
+        SolveFormat::Text | SolveFormat::Json => None,
+        SolveFormat::Csv => Some(PlanFormat::Csv),
+        SolveFormat::Ros => Some(PlanFormat::Ros),
+        SolveFormat::Geojson => Some(PlanFormat::Geojson),
+        SolveFormat::Pddl => Some(PlanFormat::Pddl),
+    }
 }
 
 /// The files to draw into, one for each objective. One that cannot be drawn has none; where all are such, there is no need
@@ -215,6 +242,36 @@ impl<'a> Found<'a> {
     fn scene(&self) -> Scene<'a> {
         let traces = self.outcome.witness.as_ref().map_or(&[][..], |s| &s.traces);
         Scene { problem: &self.loaded.problem, objective: Some(self.objective), traces }
+    }
+
+    /// The paths as others want them: nothing of what comes after they were absorbed.
+    fn plan(&self) -> Option<Vec<WitnessPath>> {
+        let strategy = self.outcome.witness.as_ref()?;
+        let cut = plans::without_rest(&self.loaded.problem, self.objective, strategy);
+        Some(to_witness(&self.loaded.problem, self.objective, &cut))
+    }
+
+    /// Prints the strategy alone; what became of the objective is a remark.
+    fn print(&self, format: PlanFormat, out: &mut Output) -> Result<()> {
+        out.remark(self.verdict_line());
+        let Some(paths) = self.plan() else { return Ok(()) };
+        out.verbatim(&self.written(format, &paths)?)
+    }
+
+    fn written(&self, format: PlanFormat, paths: &[WitnessPath]) -> Result<String> {
+        let cannot = |error| Failure::input(format_args!("the strategy cannot be written so: {error}"));
+        format.write(&self.objective.name, paths).map_err(cannot)
+    }
+
+    /// Saves the strategy alone, a file for each path.
+    fn save(&self, format: PlanFormat, path: &Path, several: bool) -> Result<()> {
+        let Some(paths) = self.plan() else { return Ok(()) };
+        let named = if several { plans::with_name(path, &self.objective.name) } else { path.to_owned() };
+        for (file, own) in plans::files(&named, &paths).into_iter().zip(&paths) {
+            let text = self.written(format, std::slice::from_ref(own))?;
+            write_bytes(&file, text.as_bytes())?;
+        }
+        Ok(())
     }
 
     fn verdict_line(&self) -> String {

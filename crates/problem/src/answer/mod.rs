@@ -3,6 +3,7 @@
 //! `docs/answer.schema.json` is made from these types by a test. Fields stand in the order of the structs; names of
 //! paths, actions and variables are those of the problem file.
 
+pub mod plans;
 mod witness;
 
 pub use witness::{StateFault, WitnessError, to_strategy, to_witness, write_state};

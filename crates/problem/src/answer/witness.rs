@@ -125,10 +125,16 @@ pub fn to_witness(problem: &Problem, objective: &Objective, strategy: &Strategy)
             system: system.name.clone(),
             actions: trace.actions.iter().map(|&a| problem.actions[a].clone()).collect(),
             states: trace.states.iter().map(|s| write_state(system, s)).collect(),
-            positions: trace.states.iter().map(|s| system.position(s)).collect(),
+            positions: positions(system, trace),
         }
     };
     strategy.traces.iter().map(one).collect()
+}
+
+/// Where each state is in the plane, where the system says so.
+fn positions(system: &System, trace: &Trace) -> Option<Vec<(f64, f64)>> {
+    let positions: Option<Vec<_>> = trace.states.iter().map(|state| system.position(state)).collect();
+    positions.filter(|positions| !positions.is_empty())
 }
 
 /// A state in the names of its system. `crash` appears only where a map's robot has crashed.
