@@ -5,6 +5,7 @@ use crate::expr::{Expr, Leaf, State, Type, Value};
 use crate::ids::{ActionId, LabelId, VarId};
 use crate::place::Place;
 use hyperplan_syntax::Span;
+use std::sync::Arc;
 use typed_index_collections::TiVec;
 
 /// A transition system, symbolically.
@@ -37,6 +38,8 @@ pub struct System {
     pub observe: Vec<Expr<Leaf>>,
     /// How to draw it, for maps.
     pub map: Option<Map>,
+    /// Where each value of the variable of [`System::edges`] lies in the plane, if a graph says so of all.
+    pub coordinates: Option<Arc<[(f64, f64)]>>,
     /// Its declaration.
     pub span: Span,
 }
@@ -182,9 +185,14 @@ impl System {
         self.labels.iter_enumerated().find(|(_, l)| l.name == name).map(|(id, _)| id)
     }
 
-    /// Where a state is in the plane: the centre of its cell in metres, on a map that says where it lies.
+    /// Where a state is in the plane: the centre of its cell in metres, on a map that says where it lies, or where its node
+    /// does.
     #[must_use]
     pub fn position(&self, state: &State) -> Option<(f64, f64)> {
+        if let (Some(coordinates), Some(edges)) = (&self.coordinates, &self.edges) {
+            let Some(Value::Enum(node)) = state.get(usize::from(edges.var)) else { return None };
+            return coordinates.get(*node as usize).copied();
+        }
         let map = self.map.as_ref()?;
         let number = |var: VarId| match state.get(usize::from(var)) {
             Some(Value::Int(n)) => u32::try_from(*n).ok(),

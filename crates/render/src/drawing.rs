@@ -9,7 +9,7 @@ use svg::node::element::path::Data;
 use svg::node::element::{Circle, Group, Line, Path, Polyline, Rectangle, Style, Text, Title};
 
 /// Colors that stay apart for color-blind readers (Okabe and Ito), each with a dash pattern of its own.
-const STROKES: [(&str, &str); 6] = [
+pub(crate) const STROKES: [(&str, &str); 6] = [
     ("#0072b2", ""),
     ("#d55e00", "8 4"),
     ("#009e73", "2 3"),
@@ -17,8 +17,8 @@ const STROKES: [(&str, &str); 6] = [
     ("#56b4e9", "5 2"),
     ("#000000", "1 2"),
 ];
-const MARGIN: f64 = 36.0;
-const LEGEND_LINE: f64 = 20.0;
+pub(crate) const MARGIN: f64 = 36.0;
+pub(crate) const LEGEND_LINE: f64 = 20.0;
 /// Between two numbers of metres along an axis.
 const METRES_APART: f64 = 60.0;
 /// Of a table: the size of its letters, from line to line, and from letter to letter.
@@ -34,7 +34,8 @@ const TABLE_CHARACTER: f64 = 7.3;
 pub fn svg(scene: Scene<'_>) -> Result<String, Error> {
     let mut groups = Vec::new();
     let (mut width, mut height) = (0.0_f64, 0.0_f64);
-    let boards = scene.boards()?;
+    let (boards, roadmaps) = (scene.boards(), scene.roadmaps()?);
+    let boards = if roadmaps.is_empty() { boards? } else { boards.unwrap_or_default() };
     for (system, board) in &boards {
         let sheet = Sheet::new(board);
         let traces = scene.traces_of(*system);
@@ -44,7 +45,14 @@ pub fn svg(scene: Scene<'_>) -> Result<String, Error> {
         width = width.max(sheet.width() + 2.0 * MARGIN);
         height += sheet.height() + 2.0 * MARGIN + lines * LEGEND_LINE;
     }
-    for (heading, table) in scene.tables(&boards) {
+    for (system, map) in &roadmaps {
+        let traces = scene.traces_of(*system);
+        groups.push(map.draw(&traces).set("transform", format!("translate(0 {height})")));
+        width = width.max(map.width());
+        height += map.height(traces.len());
+    }
+    let drawn = boards.iter().map(|(system, _)| *system).chain(roadmaps.iter().map(|(system, _)| *system));
+    for (heading, table) in scene.tables(&drawn.collect::<Vec<_>>()) {
         let lines: Vec<&str> = std::iter::once(heading.as_str()).chain(table.lines()).collect();
         groups.push(written(&lines).set("transform", format!("translate(0 {height})")));
         let longest = lines.iter().map(|line| line.chars().count()).max().unwrap_or(0);
@@ -166,7 +174,7 @@ impl<'a> Sheet<'a> {
     }
 
     fn mark(&self, mark: &Mark) -> Path {
-        let fill = fill(mark);
+        let fill = fill(&mark.label);
         Path::new().set("class", mark.label.as_str()).set("d", self.outline(&mark.cells)).set("fill", fill)
     }
 
@@ -303,7 +311,7 @@ impl<'a> Sheet<'a> {
                 .set("width", 16)
                 .set("height", 16);
             let words = format!("{} {}", mark.letter, mark.label);
-            let swatch = swatch.set("fill", fill(mark)).set("stroke", "#888888");
+            let swatch = swatch.set("fill", fill(&mark.label)).set("stroke", "#888888");
             group = group.add(swatch).add(Text::new(words).set("x", MARGIN + 44.0).set("y", y));
             y += LEGEND_LINE;
         }
@@ -319,8 +327,9 @@ fn metres(value: f64) -> String {
     format!("{} m", number(value))
 }
 
-fn fill(mark: &Mark) -> &'static str {
-    match mark.label.as_str() {
+/// The colour of the cells or nodes where a label holds.
+pub(crate) fn fill(label: &str) -> &'static str {
+    match label {
         "start" => "#f7d9a8",
         "goal" => "#a9d4f0",
         _ => "#e6e1ee",
@@ -328,7 +337,7 @@ fn fill(mark: &Mark) -> &'static str {
 }
 
 /// What stands at the end of a path.
-fn end((x, y): (f64, f64), radius: f64, color: &str, crashed: bool) -> Path {
+pub(crate) fn end((x, y): (f64, f64), radius: f64, color: &str, crashed: bool) -> Path {
     let (left, top, size) = (number(x - radius), number(y - radius), number(2.0 * radius));
     if crashed {
         let cross = Data::new().move_to((left, top)).line_by((size, size));
@@ -340,6 +349,6 @@ fn end((x, y): (f64, f64), radius: f64, color: &str, crashed: bool) -> Path {
 }
 
 /// Two decimals are enough for a drawing, and keep its text short.
-fn number(value: f64) -> f64 {
+pub(crate) fn number(value: f64) -> f64 {
     (value * 100.0).round() / 100.0
 }

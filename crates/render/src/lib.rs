@@ -1,12 +1,13 @@
 //! Maps with the paths of a strategy, as terminal text and as SVG, and traces as tables.
 //!
-//! The same input gives the same output, byte for byte. A system can be drawn if it is a map or has integer range
-//! variables `x` and `y`; everything else gets a table. A drawing has at least one system that can be drawn; the traces
-//! of others are tables in it.
+//! The same input gives the same output, byte for byte. A system can be drawn if it is a map, has integer range
+//! variables `x` and `y`, or is a graph whose nodes lie somewhere; everything else gets a table. A drawing has at least
+//! one system that can be drawn; the traces of others are tables in it.
 
 mod board;
 mod drawing;
 mod eval;
+mod roadmap;
 mod table;
 mod text;
 
@@ -16,6 +17,7 @@ pub use table::{actions_line, steps_to_rest, table};
 pub use text::{TextStyle, text_map};
 
 use hyperplan_problem::{Objective, Problem, SystemId, Trace};
+use roadmap::Roadmap;
 use thiserror::Error;
 
 /// Why something cannot be drawn.
@@ -61,7 +63,10 @@ pub struct Scene<'a> {
 /// If no system that it has paths of can be drawn.
 pub fn can_draw(problem: &Problem, objective: &Objective) -> Result<(), Error> {
     let systems = objective.leading_block().into_iter().map(|path| objective.paths[path].system);
-    let boards = systems.map(|system| Board::without_marks(&problem.systems[system]).map(|_| ()));
+    let boards = systems.map(|system| match &problem.systems[system].coordinates {
+        Some(_) => Ok(()),
+        None => Board::without_marks(&problem.systems[system]).map(|_| ()),
+    });
     // One that can be drawn is enough; else the first says why it cannot.
     boards.reduce(|all, one| if all.is_ok() { all } else { one.or(all) }).unwrap_or(Err(Error::NoSystem))
 }
@@ -80,12 +85,18 @@ impl<'a> Scene<'a> {
         if boards.is_empty() { Err(reason) } else { Ok(boards) }
     }
 
-    /// The traces that are on none of these boards, as tables with their names.
-    fn tables(&self, boards: &[(SystemId, Board)]) -> Vec<(String, String)> {
+    /// The systems that are graphs whose nodes lie somewhere.
+    fn roadmaps(&self) -> Result<Vec<(SystemId, Roadmap<'a>)>, Error> {
+        let systems = self.systems()?.into_iter();
+        Ok(systems.filter_map(|system| Some((system, Roadmap::of(&self.problem.systems[system])?))).collect())
+    }
+
+    /// The traces of systems that are not drawn, as tables with their names.
+    fn tables(&self, drawn: &[SystemId]) -> Vec<(String, String)> {
         let Some(objective) = self.objective else { return Vec::new() };
         let var = |trace: &'a Trace| objective.paths.get(trace.path).map(|var| (var, trace));
         let rest = self.traces.iter().filter_map(var);
-        let rest = rest.filter(|(var, _)| boards.iter().all(|(system, _)| *system != var.system));
+        let rest = rest.filter(|(var, _)| !drawn.contains(&var.system));
         rest.map(|(var, trace)| (heading(&var.name, trace), table(self.problem, objective, trace))).collect()
     }
 

@@ -28,7 +28,9 @@ const OBSTACLE: &str = "\u{1b}[2m";
 /// If no system has a place in the plane.
 pub fn text_map(scene: Scene<'_>, style: TextStyle) -> Result<String, Error> {
     let mut out = String::new();
-    let boards = scene.boards()?;
+    let boards = scene.boards();
+    // Roadmaps are tables here.
+    let boards = if scene.roadmaps()?.is_empty() { boards? } else { boards.unwrap_or_default() };
     for (system, board) in &boards {
         let traces = scene.traces_of(*system);
         if traces.is_empty() {
@@ -44,7 +46,8 @@ pub fn text_map(scene: Scene<'_>, style: TextStyle) -> Result<String, Error> {
         }
         legend(&mut out, board);
     }
-    for (heading, table) in scene.tables(&boards) {
+    let drawn: Vec<_> = boards.iter().map(|(system, _)| *system).collect();
+    for (heading, table) in scene.tables(&drawn) {
         let _ = write!(out, "\n{heading}\n{table}");
     }
     Ok(out)

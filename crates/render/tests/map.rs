@@ -172,3 +172,24 @@ fn maps_that_lie_somewhere_say_where() {
         "time  action  x  y  x in m  y in m\n   0  right   0  0   -0.75    2.25\n   1  -       1  0   -0.25    2.25\n"
     );
 }
+
+#[test]
+fn roadmaps_are_drawn_where_they_lie() {
+    let graph = r#"{"directed": true, "nodes": [{"id": "a", "x": 0, "y": 0}, {"id": "b<", "x": 2, "y": 1, "goal": true}],
+        "links": [{"source": "a", "target": "b<"}]}"#;
+    let text = "system R = graph(\"r.json\") { absorb goal; }\nobjective o { exists p. node[p] == a & F[0,2] goal[p] }";
+    let files = |_: &str| Ok(graph.as_bytes().to_vec());
+    let lowered = read(&mut SourceMap::new(), "test.hp", text, &files, &Overrides::none());
+    assert!(!lowered.has_errors(), "{:?}", lowered.diagnostics);
+    let problem = lowered.problem;
+    let witness =
+        r#"{"witness": [{"path": "p", "actions": ["go_b<"], "states": [{"node": "a"}, {"node": "b<"}]}]}"#;
+    let witness = StrategyFile::read_all(witness).expect("JSON").remove(0).witness.expect("given");
+    let strategy = to_strategy(&problem, &problem.objectives[0], &witness).expect("it fits");
+    let drawn = svg(scene(&problem, &strategy)).expect("a roadmap");
+    // Two units are 900 points; the second node is to the right and above.
+    assert!(drawn.contains("points=\"36,486 936,36\""), "{drawn}");
+    assert!(drawn.contains("b&lt;") && drawn.contains("goal"), "{drawn}");
+    let text = text_map(scene(&problem, &strategy), TextStyle::default()).expect("a table");
+    assert!(text.contains("time  action  node"), "{text}");
+}

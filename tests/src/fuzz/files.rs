@@ -3,7 +3,7 @@
 use super::problem::{Files, lowered};
 use hyperplan_problem::answer::plans::{self, PlanFormat, meant};
 use hyperplan_problem::answer::{StrategyFile, to_strategy, to_witness};
-use hyperplan_problem::{Lowered, Map, Problem};
+use hyperplan_problem::{Lowered, Map, Problem, Type};
 use hyperplan_verify::{Budget, check};
 use std::sync::OnceLock;
 
@@ -157,6 +157,23 @@ pub(super) const JSON_PIECES: &[&str] = &[
     "\"system\": \"World\",",
     "\"node\": \"n2\"",
     "\"crash\": true",
+    "\"nodes\"",
+    "\"links\"",
+    "\"edges\"",
+    "\"id\": 1",
+    "\"source\": \"a\"",
+    "\"target\": 7",
+    "\"directed\": true",
+    "\"pos\": [0, 1]",
+    "\"startid\": 0",
+    "\"Point\"",
+    "\"coordinates\": [0, 1]",
+    "\"dock\": true",
+    "<node id=\"a\"/>",
+    "<edge source=\"a\" target=\"b\"/>",
+    "</graph>",
+    "<data key=\"d0\">1</data>",
+    "&amp;",
     "{}",
     "[]",
     "time,path,action,",
@@ -276,6 +293,11 @@ pub(super) fn graph(data: &[u8]) {
     }
     let system = &lowered.problem.systems[hyperplan_problem::SystemId(0)];
     assert!(system.edges.is_some() && system.vars.len() == 1 && !system.actions.is_empty());
+    let nodes = match &system.vars[hyperplan_problem::VarId(0)].ty {
+        Type::Enum(nodes) => nodes.len(),
+        other => panic!("{other:?}"),
+    };
+    assert!(system.coordinates.as_ref().is_none_or(|places| places.len() == nodes));
 }
 
 /// A strategy: what fits the problem survives being written and read again, and the checker can judge it.

@@ -142,6 +142,7 @@ mod tests {
                 *codes.entry(error.code).or_default() += 1;
             }
             seen += &whole.text;
+            whole.files.values().for_each(|file| seen += file);
         }
         assert!(good > 380, "only {good} of 400 have a meaning; {codes:?}");
         let words = [
@@ -166,6 +167,8 @@ mod tests {
             "obs[",
             "enabled[",
             "room A",
+            "FeatureCollection",
+            "\"links\"",
             ": int",
             ": real",
             " M[",

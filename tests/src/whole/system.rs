@@ -147,6 +147,9 @@ impl System {
             let (from, to) = (random.one(nodes), random.one(nodes));
             format!("[\"{from}\", \"{}\", \"{to}\"]", random.one(actions))
         };
+        if random.once_in(3) {
+            return self.roadmap(random, whole, nodes);
+        }
         let edges: Vec<String> = (0..1 + random.below(7)).map(|_| edge(random)).collect();
         let some = random.one(nodes);
         let text = format!(
@@ -160,6 +163,49 @@ impl System {
         self.vars.push(("node".to_owned(), Kind::Enum(nodes.iter().map(|node| quoted(node)).collect())));
         self.labels.push("goal".to_owned());
         self.actions = actions.iter().map(|name| quoted(name)).collect();
+        head
+    }
+
+    /// A graph as networkx or Nav2 have it, with these nodes.
+    fn roadmap(&mut self, random: &mut Random, whole: &mut Whole, nodes: &[&str]) -> String {
+        let edges: Vec<(&str, &str)> =
+            (0..1 + random.below(5)).map(|_| (random.one(nodes), random.one(nodes))).collect();
+        let named = random.flip();
+        let is_route = random.flip();
+        let id = |at: usize| if named { format!("\"id\": \"e{at}\", ") } else { String::new() };
+        let (mut parts, mut links) = (Vec::new(), Vec::new());
+        for (at, node) in nodes.iter().enumerate() {
+            let goal = if at == 0 { ", \"goal\": true" } else { "" };
+            parts.push(if is_route {
+                format!("{{\"properties\": {{\"id\": \"{node}\"{goal}}}, \"geometry\": {{\"type\": \"Point\", \"coordinates\": [{at}, 0]}}}}")
+            } else {
+                format!("{{\"id\": \"{node}\", \"x\": {at}, \"y\": 1{goal}}}")
+            });
+        }
+        for (at, (from, to)) in edges.iter().enumerate() {
+            links.push(if is_route {
+                format!("{{\"properties\": {{{}\"startid\": \"{from}\", \"endid\": \"{to}\"}}, \"geometry\": {{\"type\": \"LineString\"}}}}", id(at))
+            } else {
+                format!("{{{}\"source\": \"{from}\", \"target\": \"{to}\"}}", id(at))
+            });
+            let action = if named { format!("e{at}") } else { format!("go_{to}") };
+            let action = quoted(&action);
+            if !self.actions.contains(&action) {
+                self.actions.push(action);
+            }
+        }
+        let (parts, links) = (parts.join(", "), links.join(", "));
+        let text = if is_route {
+            format!("{{\"type\": \"FeatureCollection\", \"features\": [{parts}, {links}]}}")
+        } else {
+            let directed = random.flip();
+            format!("{{\"directed\": {directed}, \"nodes\": [{parts}], \"links\": [{links}]}}")
+        };
+        let path = format!("g{}.json", self.number);
+        let head = format!("= graph(\"{path}\") ");
+        whole.files.insert(path, text);
+        self.vars.push(("node".to_owned(), Kind::Enum(nodes.iter().map(|node| quoted(node)).collect())));
+        self.labels.push("goal".to_owned());
         head
     }
 

@@ -89,16 +89,10 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
                 Some(format) => saved.and(found.save(format, path, several)),
             };
         }
-        match (plan_format(args.format), args.format) {
-            (Some(format), _) => found.print(format, out)?,
-            (None, SolveFormat::Json) => out.line(json(&answer)?)?,
-            (None, _) if quiet => out.line(found.verdict_line())?,
-            (None, _) => {
-                let text = found.text(verbose, out.color);
-                out.write(|w| if index > 0 { writeln!(w) } else { Ok(()) })?;
-                out.line(text.trim_end())?;
-            }
+        if index > 0 && args.format == SolveFormat::Text && !quiet {
+            out.line("")?;
         }
+        found.print(args.format, (verbose, quiet), out)?;
         outcome.notes.iter().for_each(|note| out.remark(format_args!("note: {}", explain.note(note))));
         if let (Some(picture), Some(_)) = (&pictures[index], &outcome.witness) {
             drawn = drawn.and(write_picture(found.scene(), picture));
@@ -251,11 +245,21 @@ impl<'a> Found<'a> {
         Some(to_witness(&self.loaded.problem, self.objective, &cut))
     }
 
-    /// Prints the strategy alone; what became of the objective is a remark.
-    fn print(&self, format: PlanFormat, out: &mut Output) -> Result<()> {
-        out.remark(self.verdict_line());
-        let Some(paths) = self.plan() else { return Ok(()) };
-        out.verbatim(&self.written(format, &paths)?)
+    /// Prints the answer, or the strategy alone; what became of the objective is a remark then.
+    fn print(&self, format: SolveFormat, (verbose, quiet): (bool, bool), out: &mut Output) -> Result<()> {
+        match (plan_format(format), format) {
+            (Some(format), _) => {
+                out.remark(self.verdict_line());
+                let Some(paths) = self.plan() else { return Ok(()) };
+                out.verbatim(&self.written(format, &paths)?)
+            }
+            (None, SolveFormat::Json) => out.line(json(self.answer)?),
+            (None, _) if quiet => out.line(self.verdict_line()),
+            (None, _) => {
+                let text = self.text(verbose, out.color);
+                out.line(text.trim_end())
+            }
+        }
     }
 
     fn written(&self, format: PlanFormat, paths: &[WitnessPath]) -> Result<String> {

@@ -339,6 +339,7 @@ mod tests {
                 crash: Some(VarId(2)),
                 place: None,
             }),
+            coordinates: None,
             span,
         };
         let path = |name: &str, quantifier| PathVar {

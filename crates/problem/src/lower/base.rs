@@ -5,6 +5,7 @@ use crate::expr::{Expr, Leaf};
 use crate::ids::{ActionId, VarId};
 use crate::system::{Clause, Label, Map, Var};
 use rustc_hash::FxHashMap;
+use std::sync::Arc;
 use typed_index_collections::TiVec;
 
 /// Action names; the same name in two systems is one action.
@@ -41,6 +42,8 @@ pub(crate) struct Base {
     pub(crate) init: Expr<Leaf>,
     pub(crate) absorb: Expr<Leaf>,
     pub(crate) map: Option<Map>,
+    /// Where each node of a graph lies.
+    pub(crate) coordinates: Option<Arc<[(f64, f64)]>>,
     /// Whether something is missing after an error.
     pub(crate) poisoned: bool,
 }
@@ -56,6 +59,7 @@ impl Default for Base {
             init: Expr::TRUE,
             absorb: Expr::FALSE,
             map: None,
+            coordinates: None,
             poisoned: false,
         }
     }

@@ -1,4 +1,10 @@
-//! Systems from graph files: states and transitions listed one by one, in JSON.
+//! Systems from graph files: states and transitions listed one by one, in JSON; and graphs of others, whose edges become
+//! actions.
+
+mod geojson;
+mod graphml;
+mod node_link;
+mod roadmap;
 
 use super::base::Base;
 use super::diagnostics::suggest;
@@ -39,13 +45,43 @@ pub(super) fn file(ast: &ast::System, file: &Text, env: &mut Env) -> Base {
         return nothing;
     }
     let mut reader = Reader { env, errors: 0 };
+    let whole = Span::new(source, 0..text.len().min(1));
+    if let Some((what, instead)) = other(&file.text) {
+        let message = format!("`{}` is {what}, which is not read", file.text);
+        reader.error(Diagnostic::error("not-supported", file.span, message).with_help(instead));
+        return nothing;
+    }
+    if text.trim_start().starts_with('<') {
+        let map = graphml::read(&mut reader, source, &text);
+        return map.into_base(&mut reader, whole, ast.span).unwrap_or(nothing);
+    }
     match Piece::parse(source, &text) {
-        Ok(root) => reader.graph(root, ast.span).unwrap_or(nothing),
+        Ok(root) => {
+            let members = root.object().unwrap_or_default();
+            let map = if geojson::is_one(&members) {
+                geojson::read(&mut reader, &members, root)
+            } else if node_link::is_one(&members) {
+                node_link::read(&mut reader, &members)
+            } else {
+                return reader.graph(root, ast.span).unwrap_or(nothing);
+            };
+            map.into_base(&mut reader, whole, ast.span).unwrap_or(nothing)
+        }
         Err(diagnostic) => {
             reader.error(*diagnostic);
             nothing
         }
     }
+}
+
+/// What is no graph that can be read, by its name, and what to give instead.
+fn other(path: &str) -> Option<(&'static str, &'static str)> {
+    let lower = path.to_lowercase();
+    let dot = [".dot", ".gv"].iter().any(|end| lower.ends_with(end));
+    dot.then_some((
+        "a graph in DOT",
+        "networkx turns it into JSON: `json.dump(node_link_data(nx_pydot.read_dot(FILE)), ...)`",
+    ))
 }
 
 struct Reader<'a, 'e> {
@@ -66,6 +102,23 @@ impl Reader<'_, '_> {
 
     fn bad(&mut self, span: Span, message: impl Into<String>) {
         self.error(Diagnostic::error("bad-graph", span, message));
+    }
+
+    /// Says how many mistakes were not shown.
+    fn end(&mut self, whole: Span) {
+        if self.errors > MAX_ERRORS {
+            let message = format!("{} more mistakes of the graph are not shown", self.errors - MAX_ERRORS);
+            self.env.diagnostics.push(Diagnostic::error("bad-graph", whole, message));
+        }
+    }
+
+    /// The members of an object; `None` after a message.
+    fn object<'t>(&mut self, piece: Piece<'t>, what: &str) -> Option<Vec<(Piece<'t>, Piece<'t>)>> {
+        let members = piece.object();
+        if members.is_none() {
+            self.bad(piece.start(), format!("{what} is an object, not {}", piece.describe()));
+        }
+        members
     }
 
     /// The parts of the system; poisoned after a message, `None` where nothing can be made of it.
@@ -96,10 +149,7 @@ impl Reader<'_, '_> {
             Some(labels) if states.is_some() => self.labels(*labels, known),
             _ => Vec::new(),
         };
-        if self.errors > MAX_ERRORS {
-            let message = format!("{} more mistakes of the graph are not shown", self.errors - MAX_ERRORS);
-            self.env.diagnostics.push(Diagnostic::error("bad-graph", root.start(), message));
-        }
+        self.end(root.start());
         let states = states?;
         let count = states.len();
         let node = Var { name: "node".into(), ty: Type::Enum(states.into_keys().collect()), span };
@@ -199,11 +249,7 @@ impl Reader<'_, '_> {
             _ => None,
         };
         match name {
-            Some(name) if name.is_empty() || name.chars().any(char::is_control) => {
-                self.bad(piece.span(), "a name is not empty and has no control characters");
-                None
-            }
-            Some(name) => Some(name),
+            Some(name) => self.plain_name(&name, piece.span()),
             None if piece.kind() == Kind::Text => {
                 self.bad(piece.span(), "the string has an escape that stands for no character");
                 None
@@ -220,21 +266,34 @@ impl Reader<'_, '_> {
         }
     }
 
+    /// A name, if it can be one.
+    fn plain_name(&mut self, name: &str, span: Span) -> Option<String> {
+        if name.is_empty() || name.chars().any(char::is_control) {
+            self.bad(span, "a name is not empty and has no control characters");
+            return None;
+        }
+        Some(name.to_owned())
+    }
+
     /// The position of a name that was listed.
     fn known(&mut self, piece: Piece<'_>, table: &Table, what: &str) -> Option<u32> {
         let name = self.name(piece, what)?;
-        let position = table.get_index_of(&name).and_then(|position| u32::try_from(position).ok());
+        self.known_name(&name, table, what, piece.span())
+    }
+
+    fn known_name(&mut self, name: &str, table: &Table, what: &str, span: Span) -> Option<u32> {
+        let position = table.get_index_of(name).and_then(|position| u32::try_from(position).ok());
         if position.is_none() {
             let message = format!("no {what} `{name}` in the graph");
             let diagnostic = Diagnostic::error(
-                if what == "state" { "unknown-state" } else { "unknown-action" },
-                piece.span(),
+                if what == "action" { "unknown-action" } else { "unknown-state" },
+                span,
                 message,
             );
             // Looking for what was meant takes time; beyond the limit nobody sees it.
             let shown = self.errors < MAX_ERRORS;
             let names = table.keys().map(String::as_str);
-            self.error(if shown { suggest(diagnostic, &name, names) } else { diagnostic });
+            self.error(if shown { suggest(diagnostic, name, names) } else { diagnostic });
         }
         position
     }

@@ -47,6 +47,7 @@ pub(crate) fn lower_system(ast: &ast::System, env: &mut Env) -> (System, bool) {
         absorb: base.absorb,
         observe: Vec::new(),
         map: base.map,
+        coordinates: base.coordinates,
         span: ast.span,
     };
     for item in &ast.items {

@@ -39,6 +39,7 @@ pub(crate) fn system(n: i64, actions: u32, edges: &[(i64, u32, i64)], init: &[i6
         absorb: Expr::FALSE,
         observe: Vec::new(),
         map: None,
+        coordinates: None,
         span: span(),
     }
 }

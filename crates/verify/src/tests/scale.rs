@@ -43,6 +43,7 @@ fn grid(n: i64) -> System {
         absorb: Expr::FALSE,
         observe: Vec::new(),
         map: None,
+        coordinates: None,
         span: span(),
     }
 }

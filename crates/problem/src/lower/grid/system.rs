@@ -144,6 +144,7 @@ pub(crate) fn base(map: &GridMap, rules: &Rules, actions: &mut Actions, span: Sp
             crash: can_crash.then_some(CRASH),
             place: map.place,
         }),
+        coordinates: None,
         poisoned: false,
     }
 }

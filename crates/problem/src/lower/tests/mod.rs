@@ -5,6 +5,7 @@ mod grids;
 mod interpreter;
 mod meaning;
 mod objectives;
+mod roadmaps;
 mod semantics;
 mod systems;
 

@@ -1,0 +1,141 @@
+//! What graphs that were not made for planning have in common: nodes that may lie somewhere and have properties, and edges that
+//! are actions.
+
+use super::{MAX_STATES, NODE, Reader, Table, one_of};
+use crate::edges::{Edge, Edges};
+use crate::expr::{Expr, Type};
+use crate::ids::ActionId;
+use crate::lower::base::Base;
+use crate::system::{Label, Var};
+use hyperplan_syntax::{Diagnostic, Span, is_name};
+use indexmap::IndexMap;
+use rustc_hash::FxBuildHasher;
+
+/// The action of an edge without a name of its own, but for where it leads.
+const GO: &str = "go_";
+
+/// Most units from the origin, for a place to be one.
+const MAX_DISTANCE: f64 = 1e9;
+
+/// A graph while it is read.
+#[derive(Debug, Default)]
+pub(super) struct Roadmap {
+    /// Names of nodes.
+    nodes: Table,
+    /// Where each lies, as far as that is said.
+    places: Vec<Option<(f64, f64)>>,
+    /// Names of actions, in order of first mention.
+    actions: Table,
+    /// From where, by which action, to where.
+    edges: Vec<(u32, u32, u32)>,
+    /// The nodes of each label.
+    labels: IndexMap<String, (Vec<u32>, Span), FxBuildHasher>,
+}
+
+impl Roadmap {
+    /// One more node; its number, or `None` after a message.
+    pub(super) fn node(
+        &mut self,
+        reader: &mut Reader<'_, '_>,
+        name: String,
+        span: Span,
+        place: Option<(f64, f64)>,
+    ) -> Option<u32> {
+        if let Some(first) = self.nodes.get(&name) {
+            let message = format!("the node `{name}` is listed twice");
+            let diagnostic = Diagnostic::error("duplicate-name", span, message);
+            reader.error(diagnostic.with_related(*first, "the first one"));
+            return None;
+        }
+        if self.nodes.len() >= MAX_STATES {
+            reader.bad(span, format!("the graph has more than {MAX_STATES} nodes"));
+            return None;
+        }
+        let number = u32::try_from(self.nodes.len()).ok()?;
+        self.nodes.insert(name, span);
+        self.places.push(place.filter(|(x, y)| x.abs().max(y.abs()) <= MAX_DISTANCE));
+        Some(number)
+    }
+
+    /// A property that is true of a node, or false of it.
+    pub(super) fn label(
+        &mut self,
+        reader: &mut Reader<'_, '_>,
+        node: u32,
+        name: &str,
+        holds: bool,
+        span: Span,
+    ) {
+        if !is_name(name) {
+            let message = format!("the property {name:?} cannot be the name of a label, and is passed over");
+            reader.env.diagnostics.push(Diagnostic::warning("not-a-label", span, message));
+            return;
+        }
+        let (nodes, _) = self.labels.entry(name.to_owned()).or_insert_with(|| (Vec::new(), span));
+        if holds {
+            nodes.push(node);
+        }
+    }
+
+    /// An edge between two nodes, by their names, and back where it has no direction.
+    pub(super) fn edge(
+        &mut self,
+        reader: &mut Reader<'_, '_>,
+        (from, to): ((&str, Span), (&str, Span)),
+        name: Option<(String, Span)>,
+        directed: bool,
+    ) {
+        let ends = [from, to].map(|(name, span)| reader.known_name(name, &self.nodes, "node", span));
+        let [Some(from), Some(to)] = ends else { return };
+        if let Some((name, span)) = name.as_ref().filter(|(name, _)| name == "none") {
+            let message =
+                format!("`{name}` says in objectives that no action was taken: no edge can have that name");
+            reader.error(Diagnostic::error("reserved-name", *span, message));
+            return;
+        }
+        let mut go = |from: u32, to: u32, target: (&str, Span)| {
+            let (name, span) = name.clone().unwrap_or_else(|| (format!("{GO}{}", target.0), target.1));
+            let (action, _) = self.actions.insert_full(name, span);
+            self.edges.extend(u32::try_from(action).ok().map(|action| (from, action, to)));
+        };
+        let (source, target) = (self.nodes.get_index(from as usize), self.nodes.get_index(to as usize));
+        if let (Some((source, at)), Some((target, _))) = (source, target) {
+            go(from, to, (target, *at));
+            if !directed {
+                go(to, from, (source, *at));
+            }
+        }
+    }
+
+    /// The system, in which the node that it is in is the state.
+    pub(super) fn into_base(self, reader: &mut Reader<'_, '_>, whole: Span, span: Span) -> Option<Base> {
+        // What is missing after another mistake may be missing for it.
+        let missing = if self.nodes.is_empty() { "node" } else { "edge" };
+        if reader.errors == 0 && self.actions.is_empty() {
+            reader.bad(whole, format!("the graph has no {missing}"));
+        }
+        reader.end(whole);
+        if self.nodes.is_empty() {
+            return None;
+        }
+        let ids: Vec<ActionId> = self.actions.keys().map(|name| reader.env.actions.intern(name)).collect();
+        let edges = self
+            .edges
+            .iter()
+            .map(|(from, action, to)| (*from, Edge { action: ids[*action as usize], to: *to }));
+        let edges = Edges::new(NODE, self.nodes.len(), edges.collect());
+        let label = |(name, (nodes, span))| Label { name, expr: one_of(nodes), nested: false, span };
+        let places: Option<Vec<(f64, f64)>> = self.places.into_iter().collect();
+        let node = Var { name: "node".into(), ty: Type::Enum(self.nodes.into_keys().collect()), span };
+        Some(Base {
+            vars: [node].into_iter().collect(),
+            actions: ids,
+            edges: Some(edges),
+            labels: self.labels.into_iter().map(label).collect(),
+            init: Expr::TRUE,
+            coordinates: places.map(Into::into),
+            poisoned: reader.errors > 0,
+            ..Base::default()
+        })
+    }
+}
