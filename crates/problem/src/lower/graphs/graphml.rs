@@ -4,7 +4,7 @@ use super::Reader;
 use super::roadmap::Roadmap;
 use hyperplan_syntax::{Diagnostic, SourceId, Span};
 use roxmltree::{Document, Node, ParsingOptions};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// The graph of a text; what is wrong with it is said.
 pub(super) fn read(reader: &mut Reader<'_, '_>, source: SourceId, text: &str) -> Roadmap {
@@ -39,13 +39,18 @@ pub(super) fn read(reader: &mut Reader<'_, '_>, source: SourceId, text: &str) ->
     for node in graph.descendants().filter(|node| node.has_tag_name_of("node")) {
         one_node(reader, &mut map, node, &keys, span(node));
     }
-    for edge in graph.descendants().filter(|edge| edge.has_tag_name_of("edge")) {
+    let edges = || graph.descendants().filter(|edge| edge.has_tag_name_of("edge"));
+    // What networkx writes as ids of a multigraph's edges are numbers of those side by side, and repeat.
+    let mut seen = FxHashSet::default();
+    let unique = edges().filter_map(|edge| edge.attribute("id")).all(|id| seen.insert(id));
+    for edge in edges() {
         let at = span(edge);
         let (Some(from), Some(to)) = (edge.attribute("source"), edge.attribute("target")) else {
             reader.bad(at, "an edge has a `source` and a `target`");
             continue;
         };
-        let id = match edge.attribute("id") {
+        let own = data(edge, &keys).into_iter().find(|(key, _)| key.name == "id").map(|(_, text)| text);
+        let id = match own.or_else(|| edge.attribute("id").filter(|_| unique)) {
             None => None,
             Some(id) => match reader.plain_name(id, at) {
                 Some(name) => Some((name, at)),
@@ -71,6 +76,16 @@ impl<'t> Key<'t> {
     }
 }
 
+/// What is said of a node or an edge.
+fn data<'a>(of: Node<'a, '_>, keys: &'a FxHashMap<&str, Key<'a>>) -> Vec<(&'a Key<'a>, &'a str)> {
+    of.children()
+        .filter(|child| child.has_tag_name_of("data"))
+        .filter_map(|datum| {
+            Some((keys.get(datum.attribute("key")?)?, datum.text().unwrap_or_default().trim()))
+        })
+        .collect()
+}
+
 fn one_node(
     reader: &mut Reader<'_, '_>,
     map: &mut Roadmap,
@@ -84,13 +99,7 @@ fn one_node(
         }
         return;
     };
-    let data: Vec<(&Key<'_>, &str)> = node
-        .children()
-        .filter(|child| child.has_tag_name_of("data"))
-        .filter_map(|datum| {
-            Some((keys.get(datum.attribute("key")?)?, datum.text().unwrap_or_default().trim()))
-        })
-        .collect();
+    let data = data(node, keys);
     let coordinate = |name: &str| {
         let found = data.iter().find(|(key, _)| key.name == name);
         found.and_then(|(_, text)| text.parse::<f64>().ok())

@@ -144,6 +144,13 @@ const GRAPHML: &str = r#"<?xml version="1.0" encoding="utf-8"?>
 #[test]
 fn graphml() {
     assert_eq!(edges("g.graphml", GRAPHML), ["n 2 e1 n1", "n 2 go_n1 n1", "n1 e1 n 2"]);
+    // Ids that repeat are none, and a datum `id` is one.
+    let keys = GRAPHML.replace("<edge source", "<edge id=\"e1\" source");
+    assert_eq!(edges("g.graphml", &keys), ["n 2 go_n1 n1", "n1 go_n 2 n 2"]);
+    let datum =
+        GRAPHML.replace("<key id=\"d0\"", "<key id=\"d9\" for=\"edge\" attr.name=\"id\"/><key id=\"d0\"");
+    let datum = datum.replace("target=\"n 2\"/>", "target=\"n 2\"><data key=\"d9\">lift</data></edge>");
+    assert_eq!(edges("g.graphml", &datum), ["n 2 go_n1 n1", "n 2 lift n1", "n1 lift n 2"]);
     let lowered = ok_with("system W = graph(\"g.graphml\");", &[("g.graphml", GRAPHML)]);
     let system = lowered.problem.systems.first().expect("a system");
     assert_eq!(labelled(system, "dock"), [vec![Value::Enum(0)]]);
