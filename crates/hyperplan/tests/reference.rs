@@ -183,7 +183,7 @@ fn is_known(folder: &Path, file: &str, text: &str) -> Result<(), String> {
     if run.status != 0 || !run.stderr.is_empty() {
         return Err(format!("exit status {}\n{}", run.status, run.stderr));
     }
-    let known: Vec<KnownStatus> = KnownStatus::of_text(text).into_iter().collect();
+    let known: Vec<KnownStatus> = KnownStatus::of_text(text).collect();
     for objective in text.lines().filter_map(|line| line.strip_prefix("objective ")) {
         if !known.iter().any(|status| objective.starts_with(&status.objective)) {
             return Err(format!("nothing is said of {objective}"));
