@@ -1,7 +1,9 @@
 //! Plans for other programs: what of them is told, and in which files.
 
+use crate::failure::{Failure, Result};
 use hyperplan_problem::answer::WitnessPath;
-use hyperplan_problem::{Expr, Node, Objective, PathLeaf, Problem, Strategy};
+use hyperplan_problem::answer::plans::{PlanError, PlanFormat};
+use hyperplan_problem::{Expr, Node, Objective, PathLeaf, Problem, Strategy, System};
 use hyperplan_render::steps_to_rest;
 use hyperplan_verify::{Budget, Check, check, complete};
 use std::path::{Path, PathBuf};
@@ -35,6 +37,24 @@ fn reads_actions(objective: &Objective) -> bool {
         }
         found
     })
+}
+
+/// Refuses what could not be written after all the work: messages of ROS are places, and not all systems have some.
+pub(crate) fn check_format(format: PlanFormat, problem: &Problem, objective: &Objective) -> Result<()> {
+    let systems =
+        objective.leading_block().into_iter().map(|path| &problem.systems[objective.paths[path].system]);
+    let nowhere = |system: &&System| {
+        system.coordinates.is_none() && system.map.as_ref().is_none_or(|map| map.place.is_none())
+    };
+    match systems.into_iter().find(nowhere) {
+        Some(system) if format == PlanFormat::Ros => Err(cannot(&PlanError::NoPlace(system.name.clone()))),
+        _ => Ok(()),
+    }
+}
+
+/// The failure to write a strategy in a format.
+pub(crate) fn cannot(error: &PlanError) -> Failure {
+    Failure::input(format_args!("the strategy cannot be written so: {error}"))
 }
 
 /// The files for the paths of a strategy: one each where there are several, with its name before the extension.

@@ -42,11 +42,7 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
     let objectives = loaded.selected(args.selection.objective.as_deref(), false)?;
     let pictures = pictures(&config, &loaded, &objectives, out)?;
     let several = objectives.len() > 1;
-    if several && plan_format(args.format).is_some() {
-        let message = "--format csv, ros, geojson and pddl print the strategy of one objective; choose it by --objective NAME, or \
-                       --save FILE with such an ending for a file each";
-        return Err(Failure::input(message));
-    }
+    check_formats(args, &config, &loaded, &objectives)?;
     let mut worst = Exit::Good;
     let mut found_so_far = String::new();
     let (mut saved, mut drawn) = (Ok(()), Ok(()));
@@ -104,6 +100,28 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
         worst = worst.max(failure.status);
     }
     Ok(worst)
+}
+
+/// Refuses formats in which what is asked for cannot be told.
+fn check_formats(
+    args: &args::Solve,
+    config: &config::Solve,
+    loaded: &Loaded,
+    objectives: &[&Objective],
+) -> Result<()> {
+    let printed = plan_format(args.format);
+    if objectives.len() > 1 && printed.is_some() {
+        let message = "--format csv, ros, geojson and pddl print the strategy of one objective; choose it by --objective NAME, or \
+                       --save FILE with such an ending for a file each";
+        return Err(Failure::input(message));
+    }
+    let saved = config.save.as_deref().and_then(PlanFormat::of_file);
+    for format in printed.into_iter().chain(saved) {
+        objectives
+            .iter()
+            .try_for_each(|objective| plans::check_format(format, &loaded.problem, objective))?;
+    }
+    Ok(())
 }
 
 /// The format of strategies for other programs, if it is one.
@@ -263,8 +281,7 @@ impl<'a> Found<'a> {
     }
 
     fn written(&self, format: PlanFormat, paths: &[WitnessPath]) -> Result<String> {
-        let cannot = |error| Failure::input(format_args!("the strategy cannot be written so: {error}"));
-        format.write(&self.objective.name, paths).map_err(cannot)
+        format.write(&self.objective.name, paths).map_err(|error| plans::cannot(&error))
     }
 
     /// Saves the strategy alone, a file for each path.
