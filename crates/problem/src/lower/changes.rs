@@ -8,6 +8,17 @@ use crate::expr::{Rational, Value};
 use hyperplan_syntax::ast::{self, Expr, Ident, MapItem, SystemItem};
 use hyperplan_syntax::{Diagnostic, Span};
 
+/// What a map was read from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Origin<'a> {
+    /// Whether it is one of ROS.
+    pub(super) is_ros: bool,
+    /// Where it stands, or is named.
+    pub(super) whole: Span,
+    /// Its file, if it has one of its own.
+    pub(super) file: Option<&'a str>,
+}
+
 /// How far obstacles grow.
 #[derive(Clone, Copy, Debug)]
 enum Radius {
@@ -74,8 +85,9 @@ impl Changes {
         matches!(self.unknown, Some((Occupancy::Free, _)))
     }
 
-    /// Changes a map that was read from what stands at `whole`; `None` after a message.
-    pub(super) fn apply(&self, mut map: Raster, is_ros: bool, whole: Span, env: &mut Env) -> Option<Raster> {
+    /// Changes a map; `None` after a message.
+    pub(super) fn apply(&self, mut map: Raster, origin: Origin<'_>, env: &mut Env) -> Option<Raster> {
+        let Origin { is_ros, whole, file } = origin;
         if let (Some((_, span)), false) = (self.unknown, is_ros) {
             let message = "only maps of ROS have cells that are unknown";
             return env.diagnostics.refuse(Diagnostic::error("misplaced-item", span, message));
@@ -83,6 +95,7 @@ impl Changes {
         map.settle_unknown(self.unknown.map_or(Occupancy::Obstacle, |(what, _)| what));
         if let Some((scenario, span)) = &self.scenario {
             place(&mut map, scenario, *span, env)?;
+            same_map(scenario, file, *span, env);
         }
         if map.free() == 0 {
             return env.diagnostics.refuse(Diagnostic::error("bad-map", whole, "the map has no free cell"));
@@ -219,6 +232,16 @@ fn part(map: &Raster, ends: [i64; 4], span: Span, env: &mut Env) -> Option<(Cell
     let (x, y) = (inside("columns", x0, x1, map.width), inside("rows", y0, y1, map.height));
     let ((x0, x1), (y0, y1)) = (x?, y?);
     Some(((x0, y0), (x1, y1)))
+}
+
+/// Warns of a scenario for a map of another name: many are of one size.
+fn same_map(scenario: &Scenario, file: Option<&str>, span: Span, env: &mut Env) {
+    let name = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or_default().to_lowercase();
+    if let Some(file) = file.filter(|file| name(file) != name(&scenario.map)) {
+        let message = format!("the scenario is for `{}`, and the map is `{file}`", scenario.map);
+        let warning = Diagnostic::warning("other-map", span, message);
+        env.diagnostics.push(warning.with_related(scenario.span, "the scenario"));
+    }
 }
 
 /// Puts the labels of a scenario on a map; `None` after a message.

@@ -1,7 +1,7 @@
 //! Systems from maps: the items that only maps have, and the files that hold them.
 
 use super::base::Base;
-use super::changes::Changes;
+use super::changes::{Changes, Origin};
 use super::consts::duplicate;
 use super::diagnostics::suggest;
 use super::env::Env;
@@ -22,7 +22,9 @@ pub(super) fn inline(ast: &ast::System, rows: &[Text], env: &mut Env) -> Base {
     let changes = Changes::of(ast, env);
     let map = letters(ast, Format::Text, env)
         .and_then(|legend| grid::from_rows(&lines, Format::Text, &legend, whole, env.diagnostics));
-    let map = map.zip(changes).and_then(|(map, changes)| changes.apply(map, false, whole, env));
+    let map = map
+        .zip(changes)
+        .and_then(|(map, changes)| changes.apply(map, Origin { is_ros: false, whole, file: None }, env));
     finish(ast, map, env)
 }
 
@@ -31,7 +33,9 @@ pub(super) fn file(ast: &ast::System, file: &Text, env: &mut Env) -> Base {
     let changes = Changes::of(ast, env);
     let frees = changes.as_ref().is_some_and(Changes::frees_unknown);
     let map = read_file(ast, file, frees, env).zip(changes);
-    let map = map.and_then(|((map, is_ros, whole), changes)| changes.apply(map, is_ros, whole, env));
+    let file = Some(file.text.as_str());
+    let map = map
+        .and_then(|((map, is_ros, whole), changes)| changes.apply(map, Origin { is_ros, whole, file }, env));
     finish(ast, map, env)
 }
 

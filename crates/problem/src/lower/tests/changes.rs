@@ -141,7 +141,8 @@ const MOVING_AI: &[u8] = b"type octile\nheight 3\nwidth 4\nmap\n....\n.@@.\n....
 
 #[test]
 fn scenarios_count_rows_from_the_top() {
-    let scen = b"version 1\n0\ta b.map\t4\t3\t0\t0\t3\t2\t4.24264068\n\n0\ta.map\t4\t3\t1\t2\t1\t0\t2.41\n";
+    let scen =
+        b"version 1\n0\tmaps/A.map\t4\t3\t0\t0\t3\t2\t4.24264068\n\n0\ta.map\t4\t3\t1\t2\t1\t0\t2.41\n";
     let files: Files<'_> = &[("a.map", MOVING_AI), ("a.scen", scen)];
     for (number, start, goal) in [("1", (0, 2), (3, 0)), ("SECOND", (1, 0), (1, 2))] {
         let text =
@@ -153,6 +154,16 @@ fn scenarios_count_rows_from_the_top() {
         assert_eq!(labelled(system, "start"), cell(start));
         assert_eq!(labelled(system, "goal"), cell(goal));
     }
+}
+
+#[test]
+fn scenarios_for_other_maps_are_told() {
+    let scen = b"0\ta b.map\t4\t3\t0\t0\t3\t2\t4.24264068\n";
+    let files: Files<'_> = &[("a.map", MOVING_AI), ("a.scen", scen)];
+    let found = said("system W = grid(\"a.map\") { scenario \"a.scen\" 1; }", files);
+    assert_eq!(found, ["test.hp:1:28 other-map: the scenario is for `a b.map`, and the map is `a.map`"]);
+    let rows = r#"system W = grid { "...." ".##." "...." } { scenario "a.scen" 1; }"#;
+    assert_eq!(said(rows, files), [""; 0]);
 }
 
 #[test]
