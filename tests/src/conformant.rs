@@ -60,6 +60,7 @@ fn system(random: &mut Random) -> System {
         vars: vec![("s", Kind::Range(states))],
         actions,
         rules,
+        also: Vec::new(),
         init: Some(starts),
         labels: vec![vec![HOME], vec![goal]],
         absorb,

@@ -51,6 +51,19 @@ pub struct Rule {
     pub choices: Vec<Option<Vec<usize>>>,
 }
 
+/// What all transitions with some actions from some states do besides: a variable gets one of these values.
+#[derive(Clone, Debug)]
+pub struct Also {
+    /// The actions.
+    pub actions: Vec<usize>,
+    /// The states.
+    pub from: Vec<usize>,
+    /// The variable.
+    pub var: usize,
+    /// Its values, some perhaps none of its own.
+    pub choices: Vec<usize>,
+}
+
 /// A system: states are numbered in mixed radix, the first variable counting most.
 #[derive(Clone, Debug)]
 pub struct System {
@@ -60,6 +73,8 @@ pub struct System {
     pub actions: Vec<&'static str>,
     /// The clauses.
     pub rules: Vec<Rule>,
+    /// What transitions do besides.
+    pub also: Vec<Also>,
     /// Initial states, if restricted.
     pub init: Option<Vec<usize>>,
     /// Labels `l0`, `l1`, ... by their states.
@@ -256,14 +271,34 @@ impl System {
                     .flat_map(|target| choices.iter().map(move |&c| [target.as_slice(), &[c]].concat()))
                     .collect();
             }
-            for to in targets.iter().filter_map(|values| self.state(values)) {
-                edges.extend(rule.actions.iter().map(|&a| (rule.from, a, to)));
+            for &action in &rule.actions {
+                let all = self.with_also(rule.from, action, &targets);
+                edges.extend(all.iter().filter_map(|values| Some((rule.from, action, self.state(values)?))));
             }
         }
         edges.extend(self.absorb.iter().flat_map(|&s| (0..self.actions.len()).map(move |a| (s, a, s))));
         edges.sort_unstable();
         edges.dedup();
         edges
+    }
+
+    /// The targets of a transition, with what it does besides.
+    fn with_also(&self, from: usize, action: usize, targets: &[Vec<usize>]) -> Vec<Vec<usize>> {
+        let mut all = targets.to_vec();
+        for also in self.also.iter().filter(|a| a.actions.contains(&action) && a.from.contains(&from)) {
+            let with = |values: &Vec<usize>, choice: usize| {
+                let mut values = values.clone();
+                values[also.var] = choice;
+                values
+            };
+            all = all.iter().flat_map(|values| also.choices.iter().map(|&c| with(values, c))).collect();
+        }
+        all
+    }
+
+    fn named(&self, actions: &[usize]) -> String {
+        let names: Vec<&str> = actions.iter().map(|&a| self.actions[a]).collect();
+        if names.len() == self.actions.len() { "*".into() } else { names.join(" | ") }
     }
 
     fn is_state(&self, state: usize) -> String {
@@ -303,9 +338,7 @@ impl Display for System {
         writeln!(f, "system M {{\n  state {};", vars.collect::<Vec<_>>().join(", "))?;
         writeln!(f, "  action {};", self.actions.join(", "))?;
         for rule in &self.rules {
-            let actions: Vec<&str> = rule.actions.iter().map(|&a| self.actions[a]).collect();
-            let actions = if actions.len() == self.actions.len() { "*".into() } else { actions.join(" | ") };
-            write!(f, "  on {actions} when {} {{", self.is_state(rule.from))?;
+            write!(f, "  on {} when {} {{", self.named(&rule.actions), self.is_state(rule.from))?;
             for ((name, kind), choices) in self.vars.iter().zip(&rule.choices) {
                 let values: Vec<String> = choices.iter().flatten().map(|&c| kind.value(c)).collect();
                 match values.as_slice() {
@@ -318,6 +351,20 @@ impl Display for System {
                 }
             }
             writeln!(f, " }}")?;
+        }
+        for also in &self.also {
+            let (name, kind) = self.vars[also.var];
+            let values: Vec<String> = also.choices.iter().map(|&c| kind.value(c)).collect();
+            let actions = self.named(&also.actions);
+            let guard = match also.from.len() == self.states() {
+                true => String::new(),
+                false => format!(" when {}", self.is_one_of(&also.from)),
+            };
+            let value = match values.as_slice() {
+                [one] => format!("= {one}"),
+                _ => format!("in {{{}}}", values.join(", ")),
+            };
+            writeln!(f, "  also on {actions}{guard} {{ {name}' {value}; }}")?;
         }
         if let Some(init) = &self.init {
             writeln!(f, "  init {};", self.is_one_of(init))?;

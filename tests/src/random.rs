@@ -4,7 +4,7 @@ pub use hyperplan_random::Random;
 
 use crate::brute::Brute;
 use crate::conformant::conformant;
-use crate::model::{Atom, Formula, Interval, Kind, Observe, Problem, Rule, Semantics, System};
+use crate::model::{Also, Atom, Formula, Interval, Kind, Observe, Problem, Rule, Semantics, System};
 
 /// Most tuples of paths that a problem may have.
 const MOST_TUPLES: usize = 60_000;
@@ -92,7 +92,15 @@ pub fn unbounded_problem(random: &mut Random) -> Problem {
         let Problem { system, within, .. } = &mut candidate;
         let edges = system.edges();
         let total = (0..system.states()).all(|state| edges.iter().any(|edge| edge.0 == state));
-        if (within.is_none() && !total) || !system.vars.iter().any(|(_, kind)| matches!(kind, Kind::Range(_)))
+        // Of numbers without bounds it cannot be told that two clauses never apply together, and none may lead out.
+        let vars = &system.vars;
+        let simple = |also: &Also| {
+            also.choices.iter().all(|&choice| choice < vars[also.var].1.size())
+                && system.also.iter().filter(|other| other.var == also.var).count() == 1
+        };
+        if !system.also.iter().all(simple)
+            || (within.is_none() && !total)
+            || !system.vars.iter().any(|(_, kind)| matches!(kind, Kind::Range(_)))
         {
             continue;
         }
@@ -125,6 +133,7 @@ pub fn halting_problem(random: &mut Random) -> Problem {
     system.labels = vec![random.subset(states, 2), random.subset(states, 3)];
     system.init = None;
     system.rules.clear();
+    system.also.clear();
     system.absorb = vec![states - 1];
     for from in 0..states - 1 {
         if random.once_in(4) {
@@ -186,6 +195,7 @@ fn system(random: &mut Random) -> System {
         vars,
         actions,
         rules: Vec::new(),
+        also: Vec::new(),
         init: None,
         labels: Vec::new(),
         absorb: Vec::new(),
@@ -197,6 +207,11 @@ fn system(random: &mut Random) -> System {
         for _ in 0..[0, 1, 1, 2, 2, 3][random.below(6)] {
             let rule = rule(random, &system, from);
             system.rules.push(rule);
+        }
+    }
+    for var in 0..system.vars.len() {
+        if random.once_in(4) {
+            add_also(random, &mut system, var);
         }
     }
     if !random.once_in(4) {
@@ -214,6 +229,37 @@ fn system(random: &mut Random) -> System {
         system.observe = Observe::Label;
     }
     system
+}
+
+/// Makes some transitions change a variable besides: in one way, or in another where that does not apply. What the
+/// transitions themselves said of it goes.
+fn add_also(random: &mut Random, system: &mut System, var: usize) {
+    let states = system.states();
+    let everywhere = random.flip();
+    let from = if everywhere { (0..states).collect() } else { random.subset(states, 2) };
+    let mut actions = random.subset(system.actions.len(), 2);
+    if actions.is_empty() {
+        actions.push(0);
+    }
+    let elsewhere: Vec<usize> = (0..states).filter(|state| !from.contains(state)).collect();
+    for rule in &mut system.rules {
+        if rule.actions.iter().any(|action| actions.contains(action)) {
+            rule.choices[var] = None;
+        }
+    }
+    let kind = system.vars[var].1;
+    let mut some = |from: Vec<usize>| {
+        let mut choices: Vec<usize> = (0..1 + random.below(2)).map(|_| random.below(kind.size())).collect();
+        // A value beyond the range takes the transition away.
+        if matches!(kind, Kind::Range(_)) && random.once_in(4) {
+            choices[0] = kind.size();
+        }
+        Also { actions: actions.clone(), from, var, choices }
+    };
+    system.also.push(some(from));
+    if !everywhere {
+        system.also.push(some(elsewhere));
+    }
 }
 
 fn rule(random: &mut Random, system: &System, from: usize) -> Rule {

@@ -32,6 +32,9 @@ fn smaller(problem: &Problem) -> Vec<Problem> {
         }
         changed(&|p| shorter(nth(&mut p.formula, at)));
     }
+    for at in 0..problem.system.also.len() {
+        changed(&|p| remove(&mut p.system.also, at));
+    }
     for (at, rule) in problem.system.rules.iter().enumerate() {
         changed(&|p| remove(&mut p.system.rules, at));
         for action in (0..rule.actions.len()).filter(|_| rule.actions.len() > 1) {

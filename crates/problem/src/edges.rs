@@ -1,7 +1,8 @@
 //! Transitions that are listed one by one.
 
-use crate::ids::{ActionId, VarId};
+use crate::ids::{ActionId, AttributeId, VarId};
 use std::sync::Arc;
+use typed_index_collections::{TiSlice, TiVec};
 
 /// A transition, seen from its source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -10,6 +11,15 @@ pub struct Edge {
     pub action: ActionId,
     /// The value that the variable gets.
     pub to: u32,
+}
+
+/// A number that transitions carry.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Attribute {
+    /// Its name.
+    pub name: String,
+    /// The number of each transition, by its position in the table.
+    numbers: Arc<[i64]>,
 }
 
 /// The transitions of a graph: one variable moves from value to value, all others stay as they are.
@@ -24,24 +34,70 @@ pub struct Edges {
     starts: Arc<[usize]>,
     /// By source; those of one source sorted, without repetition.
     list: Arc<[Edge]>,
+    attributes: Arc<TiSlice<AttributeId, Attribute>>,
 }
 
 impl Edges {
     /// The table of transitions `(from, edge)` between the first `values` values of a variable; others are left out.
     #[must_use]
-    pub fn new(var: VarId, values: usize, mut transitions: Vec<(u32, Edge)>) -> Self {
-        transitions.retain(|(from, edge)| (*from as usize) < values && (edge.to as usize) < values);
+    pub fn new(var: VarId, values: usize, transitions: Vec<(u32, Edge)>) -> Self {
+        let bare = transitions.into_iter().map(|(from, edge)| (from, edge, Vec::new())).collect();
+        Edges::with_attributes(var, values, &[], bare)
+    }
+
+    /// The same with a number for each attribute: 0 for those that a transition does not have. Of equal transitions the
+    /// one with the smaller numbers counts.
+    #[must_use]
+    pub fn with_attributes(
+        var: VarId,
+        values: usize,
+        names: &[String],
+        mut transitions: Vec<(u32, Edge, Vec<i64>)>,
+    ) -> Self {
+        transitions.retain(|(from, edge, _)| (*from as usize) < values && (edge.to as usize) < values);
         transitions.sort_unstable();
-        transitions.dedup();
+        transitions.dedup_by_key(|(from, edge, _)| (*from, *edge));
         let mut starts = vec![0; values + 1];
-        for (from, _) in &transitions {
+        for (from, ..) in &transitions {
             starts[*from as usize + 1] += 1;
         }
         for at in 0..values {
             starts[at + 1] += starts[at];
         }
-        let list = transitions.into_iter().map(|(_, edge)| edge).collect();
-        Edges { var, starts: starts.into(), list }
+        let attribute = |(at, name): (usize, &String)| Attribute {
+            name: name.clone(),
+            numbers: transitions.iter().map(|(.., own)| own.get(at).copied().unwrap_or(0)).collect(),
+        };
+        let attributes: TiVec<AttributeId, Attribute> = names.iter().enumerate().map(attribute).collect();
+        let list = transitions.iter().map(|(_, edge, _)| *edge).collect();
+        Edges { var, starts: starts.into(), list, attributes: attributes.into_boxed_slice().into() }
+    }
+
+    /// What numbers transitions carry.
+    #[must_use]
+    pub fn attributes(&self) -> &TiSlice<AttributeId, Attribute> {
+        &self.attributes
+    }
+
+    /// The number of a transition, given by its position in the table.
+    #[must_use]
+    pub fn number(&self, at: usize, attribute: AttributeId) -> i64 {
+        let numbers = self.attributes.get(attribute).map(|attribute| &attribute.numbers);
+        numbers.and_then(|numbers| numbers.get(at)).copied().unwrap_or(0)
+    }
+
+    /// The least and greatest number that an attribute has.
+    #[must_use]
+    pub fn numbers_between(&self, attribute: AttributeId) -> (i64, i64) {
+        let numbers = self.attributes.get(attribute).map_or(&[][..], |attribute| &attribute.numbers);
+        // A step that follows no listed transition reads 0.
+        (numbers.iter().copied().fold(0, i64::min), numbers.iter().copied().fold(0, i64::max))
+    }
+
+    /// The transitions from a value with their positions in the table.
+    pub fn numbered(&self, from: u32) -> impl Iterator<Item = (usize, Edge)> + '_ {
+        let start = self.starts.get(from as usize).copied().unwrap_or(0);
+        (start..).zip(self.of(from).iter().copied())
     }
 
     /// The transitions from a value, by action.
@@ -64,7 +120,19 @@ impl Edges {
 #[cfg(test)]
 mod tests {
     use super::{Edge, Edges};
-    use crate::ids::{ActionId, VarId};
+    use crate::ids::{ActionId, AttributeId, VarId};
+
+    #[test]
+    fn edges_carry_numbers() {
+        let edge = |to| Edge { action: ActionId(0), to };
+        let given = vec![(1, edge(0), vec![7]), (0, edge(1), vec![-2]), (0, edge(0), Vec::new())];
+        let edges = Edges::with_attributes(VarId(0), 2, &["length".to_owned()], given);
+        let length = AttributeId(0);
+        let all = |from| edges.numbered(from).map(|(at, e)| (e.to, edges.number(at, length)));
+        assert_eq!(all(0).collect::<Vec<_>>(), [(0, 0), (1, -2)]);
+        assert_eq!(all(1).collect::<Vec<_>>(), [(0, 7)]);
+        assert_eq!(edges.numbers_between(length), (-2, 7));
+    }
 
     #[test]
     fn edges_are_found_by_source() {

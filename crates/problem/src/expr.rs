@@ -1,6 +1,6 @@
 //! Typed expressions, over the state of one system or over the paths of an objective.
 
-use crate::ids::{ActionId, LabelId, PathId, VarId};
+use crate::ids::{ActionId, AttributeId, LabelId, PathId, VarId};
 use num_rational::Ratio;
 use num_traits::{CheckedAdd, CheckedMul};
 use rustc_hash::FxHashSet;
@@ -103,6 +103,17 @@ pub enum Leaf {
     Var(VarId),
     /// Whether a label holds.
     Label(LabelId),
+}
+
+/// What an expression over one step of a system reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum StepLeaf {
+    /// Of the state before the step.
+    State(Leaf),
+    /// Whether the step takes this action.
+    Took(ActionId),
+    /// A number of the listed transition that the step follows; 0 where it follows none.
+    Attribute(AttributeId),
 }
 
 /// What an atom of an objective reads, now.

@@ -27,6 +27,8 @@ ids! {
     VarId;
     /// A label of one system.
     LabelId;
+    /// A number that the transitions of one graph carry.
+    AttributeId;
     /// An action name; the same name in two systems is the same action.
     ActionId;
     /// A path variable of one objective, in the order of quantification.

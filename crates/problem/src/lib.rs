@@ -17,14 +17,14 @@ mod status;
 mod strategy;
 mod system;
 
-pub use edges::{Edge, Edges};
-pub use expr::{Comparison, Expr, Leaf, PathLeaf, Rational, State, TupleSet, Type, Value};
+pub use edges::{Attribute, Edge, Edges};
+pub use expr::{Comparison, Expr, Leaf, PathLeaf, Rational, State, StepLeaf, TupleSet, Type, Value};
 pub use formula::{Formula, Interval, Node, Written};
-pub use ids::{ActionId, FormulaId, LabelId, PathId, SystemId, VarId};
+pub use ids::{ActionId, AttributeId, FormulaId, LabelId, PathId, SystemId, VarId};
 pub use lower::{Loader, Lowered, NoFiles, Overrides, lower, read};
 pub use objective::{Mode, Objective, PathVar, Quantifier, Semantics};
 pub use place::Place;
 pub use problem::Problem;
 pub use status::KnownStatus;
 pub use strategy::{Strategy, Trace};
-pub use system::{Clause, Label, LabelMemo, Map, System, Update, Var};
+pub use system::{Also, Clause, Label, LabelMemo, Map, System, Update, Var};

@@ -1,7 +1,7 @@
 //! Discrete transition systems (the paper's Definition 1, with initial states and nondeterminism).
 
 use crate::edges::Edges;
-use crate::expr::{Expr, Leaf, State, Type, Value};
+use crate::expr::{Expr, Leaf, State, StepLeaf, Type, Value};
 use crate::ids::{ActionId, LabelId, VarId};
 use crate::place::Place;
 use hyperplan_syntax::Span;
@@ -16,6 +16,10 @@ use typed_index_collections::TiVec;
 /// allow, all expressions read in `s`, variables without an update unchanged; a combination in which some value is
 /// outside its variable's type is no transition. [`System::edges`] are further transitions of such states. Two ways to
 /// the same `s'` with the same action are one transition.
+///
+/// Each [`Also`] that lists `a` and whose guard holds in `s` makes its updates too, whatever clause or edge gives the
+/// transition: as if they stood in it. What a transition itself changes, and what another such clause does, none of
+/// them does.
 #[derive(Clone, Debug, PartialEq)]
 pub struct System {
     /// Its name.
@@ -26,6 +30,8 @@ pub struct System {
     pub actions: Vec<ActionId>,
     /// Transition clauses.
     pub clauses: Vec<Clause>,
+    /// What transitions do besides.
+    pub also: Vec<Also>,
     /// Transitions that are listed one by one, for graphs.
     pub edges: Option<Edges>,
     /// Initial states.
@@ -133,16 +139,50 @@ pub struct Clause {
     pub generated: bool,
 }
 
+/// `also on ACTIONS when GUARD { UPDATES }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Also {
+    /// The actions concerned, sorted.
+    pub actions: Vec<ActionId>,
+    /// Where it applies.
+    pub guard: Expr<Leaf>,
+    /// At most one update a variable.
+    pub updates: Vec<(VarId, Update<StepLeaf>)>,
+    /// Its place.
+    pub span: Span,
+}
+
 /// What becomes of a variable; expressions read the state before.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Update {
+pub enum Update<L = Leaf> {
     /// `v' = E`
-    Assign(Expr<Leaf>),
+    Assign(Expr<L>),
     /// `v' in {E, ...}`; never empty
-    OneOf(Vec<Expr<Leaf>>),
+    OneOf(Vec<Expr<L>>),
     /// `v' in LO..HI`: every number of the variable's type between the two, both included; none where the first
     /// is greater.
-    Within(Expr<Leaf>, Expr<Leaf>),
+    Within(Expr<L>, Expr<L>),
+}
+
+impl<L> Update<L> {
+    /// Its expressions.
+    #[must_use]
+    pub fn exprs(&self) -> Vec<&Expr<L>> {
+        match self {
+            Update::Assign(e) => vec![e],
+            Update::OneOf(es) => es.iter().collect(),
+            Update::Within(lo, hi) => vec![lo, hi],
+        }
+    }
+
+    /// The same of other expressions.
+    pub fn map<M>(&self, mut f: impl FnMut(&Expr<L>) -> Expr<M>) -> Update<M> {
+        match self {
+            Update::Assign(e) => Update::Assign(f(e)),
+            Update::OneOf(es) => Update::OneOf(es.iter().map(f).collect()),
+            Update::Within(lo, hi) => Update::Within(f(lo), f(hi)),
+        }
+    }
 }
 
 /// How to draw a map: cells are named by column `x` from the left and row `y` from the bottom.
@@ -221,6 +261,11 @@ impl System {
             .filter(|(_, needed)| *needed)
             .map(|(at, _): (usize, bool)| LabelId::from(at))
             .collect()
+    }
+
+    /// What transitions with that action do besides, where guards say so.
+    pub fn also_on(&self, action: ActionId) -> impl Iterator<Item = &Also> {
+        self.also.iter().filter(move |also| also.actions.binary_search(&action).is_ok())
     }
 
     /// The value of an expression where the variables have these values; see [`Expr::evaluate`].

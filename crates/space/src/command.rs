@@ -1,9 +1,13 @@
 //! A system as guarded commands: the ways to take a step, and what each asks and does, without a list of its states.
 
+use crate::also;
 use crate::eval::{bounds, code, decode, holds_in, value_in};
 use crate::graph::TooLarge;
-use hyperplan_problem::{ActionId, Expr, Leaf, State, System, Type, Update, Value, VarId};
+use hyperplan_problem::{
+    ActionId, AttributeId, Edges, Expr, Leaf, State, System, TupleSet, Type, Update, Value, VarId,
+};
 use rustc_hash::FxHashMap;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// More commands than this are refused: each is a part of every step.
@@ -86,15 +90,23 @@ impl Commands {
             }
             for (at, clause) in system.clauses.iter().enumerate() {
                 if clause.actions.contains(&action) {
-                    for updates in combinations(system, &clause.updates, open)? {
-                        push(Guard::Clause(at), updates);
+                    for besides in also::besides(system, action, &also::no_number)? {
+                        let updates: Vec<_> = clause.updates.iter().cloned().chain(besides).collect();
+                        for updates in combinations(system, &updates, open)? {
+                            push(Guard::Clause(at), updates);
+                        }
                     }
                 }
             }
-            if let (Some(var), Some(tables)) = (system.edges.as_ref().map(|e| e.var), listed.remove(&action))
-            {
-                for table in tables {
-                    push(Guard::Listed(var, Arc::new(table)), Vec::new());
+            if let (Some(edges), Some(tables)) = (&system.edges, listed.remove(&action)) {
+                for Table { targets, positions } in tables {
+                    let targets = Arc::new(targets);
+                    let number = |attribute| numbers(edges, &targets, &positions, attribute);
+                    for besides in also::besides(system, action, &number)? {
+                        for updates in combinations(system, &besides, open)? {
+                            push(Guard::Listed(edges.var, targets.clone()), updates);
+                        }
+                    }
                 }
             }
             if all.len() > MAX_COMMANDS {
@@ -211,9 +223,15 @@ impl Command {
 
     /// Whether some input has more than one possible value in a state where the command can be taken.
     fn is_open(&self, system: &System, from: &[Value]) -> bool {
-        let Guard::Clause(clause) = self.guard else { return false };
-        holds_in(system, &system.absorb, from) == Some(false)
-            && holds_in(system, &system.clauses[clause].guard, from) == Some(true)
+        let taken = match &self.guard {
+            Guard::Absorbing => false,
+            Guard::Clause(clause) => holds_in(system, &system.clauses[*clause].guard, from) == Some(true),
+            Guard::Listed(var, table) => {
+                table.binary_search_by_key(&code(from[usize::from(*var)]), |entry| entry.0).is_ok()
+            }
+        };
+        taken
+            && holds_in(system, &system.absorb, from) == Some(false)
             && self.ranges(system, from).any(|(_, lo, hi)| lo < hi)
     }
 
@@ -227,21 +245,47 @@ impl Command {
     }
 }
 
+/// Listed transitions, no two from one value, with their positions among all.
+#[derive(Default)]
+struct Table {
+    targets: Listed,
+    positions: Vec<usize>,
+}
+
 /// The listed transitions of each action, told apart so that a table has at most one from each value.
-fn listed(system: &System) -> FxHashMap<ActionId, Vec<Listed>> {
-    let mut tables: FxHashMap<ActionId, Vec<Listed>> = FxHashMap::default();
+fn listed(system: &System) -> FxHashMap<ActionId, Vec<Table>> {
+    let mut tables: FxHashMap<ActionId, Vec<Table>> = FxHashMap::default();
     // By source, and of one source by action.
-    let all: Vec<_> = system.edges.iter().flat_map(|edges| edges.iter()).collect();
-    for same in all.chunk_by(|(from, a), (other, b)| from == other && a.action == b.action) {
-        for (number, &(from, edge)) in same.iter().enumerate() {
+    let all: Vec<_> = system.edges.iter().flat_map(Edges::iter).enumerate().collect();
+    for same in all.chunk_by(|(_, (from, a)), (_, (other, b))| from == other && a.action == b.action) {
+        for (number, &(position, (from, edge))) in same.iter().enumerate() {
             let tables = tables.entry(edge.action).or_default();
             if tables.len() <= number {
-                tables.push(Listed::new());
+                tables.push(Table::default());
             }
-            tables[number].push((i64::from(from), i64::from(edge.to)));
+            tables[number].targets.push((i64::from(from), i64::from(edge.to)));
+            tables[number].positions.push(position);
         }
     }
     tables
+}
+
+/// The number of whichever transition of a table starts at the present value: a sum of which one term counts.
+fn numbers(edges: &Edges, targets: &Listed, positions: &[usize], attribute: AttributeId) -> Expr<Leaf> {
+    let mut by_number: BTreeMap<i64, Vec<Box<[i64]>>> = BTreeMap::new();
+    for ((from, _), &position) in targets.iter().zip(positions) {
+        by_number.entry(edges.number(position, attribute)).or_default().push(Box::from([*from]));
+    }
+    if let (1, Some((number, _))) = (by_number.len(), by_number.first_key_value()) {
+        return Expr::Const(Value::Int(*number));
+    }
+    let term = |(number, sources): (i64, Vec<Box<[i64]>>)| {
+        let node = Expr::Leaf(Leaf::Var(edges.var));
+        let here = Expr::Member(vec![node], Arc::new(TupleSet::new(sources)));
+        let constant = |n| Box::new(Expr::Const(Value::Int(n)));
+        Expr::If(Box::new(here), constant(number), constant(0))
+    };
+    Expr::Add(by_number.into_iter().map(term).collect())
 }
 
 /// Every combination of the values that updates allow. Where they are too many to list, they are inputs of the step,

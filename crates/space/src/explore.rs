@@ -1,8 +1,11 @@
 //! Enumerating the reachable states of a system, breadth first from its initial ones.
 
+use crate::also::{Updates, applicable, no_number};
 use crate::eval::{bounds, eval_in};
 use crate::graph::{Graph, LIVE, Letter, StateIx, TooLarge};
-use hyperplan_problem::{ActionId, Clause, Expr, LabelId, LabelMemo, Leaf, System, Update, Value, VarId};
+use hyperplan_problem::{
+    ActionId, Also, Clause, Expr, LabelId, LabelMemo, Leaf, System, Update, Value, VarId,
+};
 use rustc_hash::FxHashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -23,6 +26,7 @@ impl Graph {
             width: system.vars.len(),
             codes: Vec::new(),
             index: FxHashMap::default(),
+            also: FxHashMap::default(),
             positions: (0u32..).zip(&system.actions).map(|(at, action)| (*action, at)).collect(),
         };
         let initial = explorer.initial_states()?;
@@ -112,6 +116,8 @@ struct Explorer<'a> {
     width: usize,
     codes: Vec<i64>,
     index: FxHashMap<u128, StateIx>,
+    /// What transitions with an action do besides, by its position, where it is the same for all.
+    also: FxHashMap<u32, Vec<(&'a Also, Updates)>>,
     /// The position of each action in the system.
     positions: FxHashMap<ActionId, u32>,
 }
@@ -212,39 +218,76 @@ impl Explorer<'_> {
             if eval_in(system, &clause.guard, codes) == 0 {
                 continue;
             }
-            for next in outcomes(system, clause, codes, self.budget)? {
-                if let Some(next) = self.intern(&next)? {
-                    found.extend(action_positions(system, clause).map(|a| (a, next)));
+            if system.also.is_empty() {
+                for next in outcomes(system, &clause.updates, codes, self.budget)? {
+                    if let Some(next) = self.intern(&next)? {
+                        found.extend(action_positions(system, clause).map(|a| (a, next)));
+                    }
+                }
+                continue;
+            }
+            for at in action_positions(system, clause) {
+                let besides = self.besides(at, None, codes);
+                let updates = clause.updates.iter().chain(&besides);
+                for next in outcomes(system, updates, codes, self.budget)? {
+                    found.extend(self.intern(&next)?.map(|next| (at, next)));
                 }
             }
         }
         self.listed(codes, found)
     }
 
+    /// What a transition does besides in a state, one with that action that follows this edge.
+    fn besides(&mut self, action: u32, edge: Option<usize>, codes: &[i64]) -> Updates {
+        let system = self.system;
+        let edges = system.edges.as_ref().filter(|edges| !edges.attributes().is_empty()).zip(edge);
+        let number = |attribute| match edges {
+            None => no_number(attribute),
+            Some((edges, at)) => Expr::Const(Value::Int(edges.number(at, attribute))),
+        };
+        let find = || applicable(system, system.actions[action as usize], &number);
+        let found;
+        let all = match edges {
+            // Numbers differ from edge to edge.
+            Some(_) => {
+                found = find();
+                &found
+            }
+            None => self.also.entry(action).or_insert_with(find),
+        };
+        let here = all.iter().filter(|(also, _)| eval_in(system, &also.guard, codes) != 0);
+        here.flat_map(|(_, updates)| updates.iter().cloned()).collect()
+    }
+
     /// The transitions that the system lists one by one.
     fn listed(&mut self, codes: &[i64], found: &mut Edges) -> Result<(), TooLarge> {
         let Some(edges) = &self.system.edges else { return Ok(()) };
-        let at = usize::from(edges.var);
-        let mut next = codes.to_vec();
-        for edge in edges.of(u32::try_from(codes[at]).unwrap_or(u32::MAX)) {
-            next[at] = i64::from(edge.to);
-            if let (Some(next), Some(&action)) = (self.intern(&next)?, self.positions.get(&edge.action)) {
-                found.push((action, next));
+        let var = usize::from(edges.var);
+        for (at, edge) in edges.numbered(u32::try_from(codes[var]).unwrap_or(u32::MAX)) {
+            let Some(&action) = self.positions.get(&edge.action) else { continue };
+            let besides = if self.system.also.is_empty() {
+                Updates::new()
+            } else {
+                self.besides(action, Some(at), codes)
+            };
+            for mut next in outcomes(self.system, &besides, codes, self.budget)? {
+                next[var] = i64::from(edge.to);
+                found.extend(self.intern(&next)?.map(|next| (action, next)));
             }
         }
         Ok(())
     }
 }
 
-/// The states that a clause's updates allow, in or out of range.
-pub(crate) fn outcomes(
+/// The states that updates allow, in or out of range.
+pub(crate) fn outcomes<'u>(
     system: &System,
-    clause: &Clause,
+    updates: impl IntoIterator<Item = &'u (VarId, Update)>,
     codes: &[i64],
     budget: usize,
 ) -> Result<Vec<Vec<i64>>, TooLarge> {
     let mut all = vec![codes.to_vec()];
-    for (var, update) in &clause.updates {
+    for (var, update) in updates {
         let values = update_values(system, *var, update, codes, budget / all.len().max(1))?;
         all = all
             .iter()

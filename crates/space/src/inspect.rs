@@ -18,6 +18,9 @@ pub struct Findings {
     pub added: Vec<(usize, StateIx)>,
     /// Written clauses an update of which leaves its variable's range where the clause is enabled.
     pub lost: Vec<(usize, StateIx)>,
+    /// Clauses that add something to other transitions, by position, of which no guard holds where a state does not
+    /// absorb.
+    pub idle: Vec<usize>,
 }
 
 /// States looked at between two questions whether to stop.
@@ -31,6 +34,7 @@ const OUTCOMES: usize = 1024;
 pub fn inspect(system: &System, graph: &Graph, stop: &dyn Fn() -> bool) -> Option<Findings> {
     let mut findings = Findings::default();
     let mut seen = vec![false; system.labels.len()];
+    findings.idle = (0..system.also.len()).collect();
     for state in 0..graph.len() as StateIx {
         if state % STRIDE == 0 && stop() {
             return None;
@@ -45,6 +49,7 @@ pub fn inspect(system: &System, graph: &Graph, stop: &dyn Fn() -> bool) -> Optio
         }
         if eval_in(system, &system.absorb, codes) == 0 {
             clauses(system, state, codes, &mut findings);
+            findings.idle.retain(|&at| eval_in(system, &system.also[at].guard, codes) == 0);
         }
     }
     findings.unreachable = (0..seen.len()).filter(|&at| !seen[at]).map(LabelId::from).collect();
@@ -76,7 +81,7 @@ fn clauses(system: &System, state: StateIx, codes: &[i64], findings: &mut Findin
 /// Whether both clauses have outcomes, and not the same.
 fn differ(system: &System, first: usize, second: usize, codes: &[i64]) -> bool {
     let outcomes = |clause: usize| -> Option<Vec<Vec<i64>>> {
-        let mut all = outcomes(system, &system.clauses[clause], codes, OUTCOMES).ok()?;
+        let mut all = outcomes(system, &system.clauses[clause].updates, codes, OUTCOMES).ok()?;
         let inside = |next: &Vec<i64>| {
             let fits =
                 |(value, var): (&i64, &Var)| bounds(&var.ty).is_none_or(|(lo, hi)| (lo..=hi).contains(value));

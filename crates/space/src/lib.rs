@@ -11,6 +11,7 @@
 //! `eval` gives expressions their values; `graph` and `command` read it, `explore` fills graphs, `run` and `inspect` read
 //! them.
 
+mod also;
 mod command;
 mod eval;
 mod explore;
@@ -20,6 +21,7 @@ mod run;
 #[cfg(test)]
 mod tests;
 
+pub use also::{Updates, besides, no_number};
 pub use command::{Command, Commands, Guard, Listed, MAX_COMMANDS, NewValue};
 pub use eval::{bounds, code, decode, eval, eval_in, holds_in, value_in};
 pub use explore::Graphs;

@@ -96,6 +96,8 @@ pub enum SystemItem {
     Action(Vec<Ident>),
     /// `on A || B when GUARD { UPDATES }`
     On(Clause),
+    /// `also on A || B when GUARD { UPDATES }`
+    Also(Clause),
     /// `init EXPR;`
     Init(Expr),
     /// `label NAME = EXPR;`
@@ -156,7 +158,7 @@ pub enum Type {
     Real,
 }
 
-/// `on ACTIONS when GUARD { UPDATES }`
+/// `on ACTIONS when GUARD { UPDATES }`, perhaps behind `also`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clause {
     /// The actions, or `None` for `*`.
@@ -165,7 +167,7 @@ pub struct Clause {
     pub guard: Option<Expr>,
     /// The updates.
     pub updates: Vec<Update>,
-    /// `on ACTIONS when GUARD`.
+    /// `on ACTIONS when GUARD`, with the `also`.
     pub span: Span,
 }
 

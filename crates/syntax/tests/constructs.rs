@@ -56,6 +56,7 @@ fn describe(item: &SystemItem) -> String {
         }
         SystemItem::Action(actions) => format!("action {}", names(actions)),
         SystemItem::On(clause) => describe_clause(clause),
+        SystemItem::Also(clause) => format!("also {}", describe_clause(clause)),
         SystemItem::Init(expr) => format!("init {}", show(expr)),
         SystemItem::Label(name, expr) => format!("label {} {}", name.name, show(expr)),
         SystemItem::Observe(exprs) => {

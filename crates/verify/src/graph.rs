@@ -2,7 +2,7 @@
 
 use crate::eval::{eval, truth};
 use crate::report::{Error, Stop};
-use hyperplan_problem::{ActionId, Clause, Expr, Leaf, System, Type, Update, Value, VarId};
+use hyperplan_problem::{ActionId, Also, Expr, Leaf, StepLeaf, System, Type, Update, Value, VarId};
 use rustc_hash::FxHashMap;
 use std::rc::Rc;
 use typed_index_collections::TiVec;
@@ -48,6 +48,16 @@ struct Node {
     /// ... and no more than so many.
     at_most: u32,
 }
+
+/// A transition from a state: its action, and which listed one it is, if it is one.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    action: ActionId,
+    edge: Option<usize>,
+}
+
+/// How an expression gets its value.
+type ValueOf<'f, L> = dyn Fn(&Expr<L>) -> Result<Value, Stop> + 'f;
 
 /// Actions that lead to the same values.
 type Target<'p> = (&'p [ActionId], Vec<Value>);
@@ -171,38 +181,70 @@ impl<'p> Graph<'p> {
             return Ok(self.system.actions.contains(&action) && here == there);
         }
         for clause in self.system.clauses.iter().filter(|c| c.actions.contains(&action)) {
-            if self.holds(from, &clause.guard)? && self.allows(from, clause, there)? {
+            let step = Step { action, edge: None };
+            if self.holds(from, &clause.guard)? && self.allows(from, &clause.updates, step, there)? {
                 return Ok(true);
             }
         }
-        let listed = self.system.edges.as_ref().is_some_and(|edges| {
-            let mut leads = edges.of(position(here, edges.var)).iter();
-            leads.any(|e| e.action == action && *with(here, edges.var, Value::Enum(e.to)) == **there)
-        });
-        Ok(listed)
-    }
-
-    /// Whether a clause whose guard holds leads to these values, which are of their variables' types.
-    fn allows(&self, from: StateId, clause: &Clause, there: &[Value]) -> Result<bool, Stop> {
-        let here = &self.nodes[from].values;
-        for (var, (&old, &new)) in self.system.vars.keys().zip(here.iter().zip(there)) {
-            let allowed = match clause.updates.iter().find(|(updated, _)| *updated == var) {
-                None => old == new,
-                Some((_, Update::Assign(e))) => self.value(from, e)? == new,
-                Some((_, Update::OneOf(es))) => {
-                    let values: Vec<Value> =
-                        es.iter().map(|e| self.value(from, e)).collect::<Result<_, _>>()?;
-                    values.contains(&new)
-                }
-                Some((_, Update::Within(lo, hi))) => {
-                    self.value(from, lo)? <= new && new <= self.value(from, hi)?
-                }
-            };
-            if !allowed {
-                return Ok(false);
+        let Some(edges) = &self.system.edges else { return Ok(false) };
+        for (at, edge) in edges.numbered(position(here, edges.var)).filter(|(_, edge)| edge.action == action)
+        {
+            let moved = [(edges.var, Update::Assign(Expr::Const(Value::Enum(edge.to))))];
+            if self.allows(from, &moved, Step { action, edge: Some(at) }, there)? {
+                return Ok(true);
             }
         }
-        Ok(true)
+        Ok(false)
+    }
+
+    /// Whether a transition with these updates, and what it does besides, leads to these values, which are of their
+    /// variables' types.
+    fn allows(
+        &self,
+        from: StateId,
+        updates: &[(VarId, Update)],
+        step: Step,
+        there: &[Value],
+    ) -> Result<bool, Stop> {
+        let here = &self.nodes[from].values;
+        let mut allowed: Vec<Option<bool>> = vec![None; here.len()];
+        let mut say = |var: VarId, says: bool| allowed[usize::from(var)] = Some(says);
+        for (var, update) in updates {
+            let new = there[usize::from(*var)];
+            say(*var, may_become(update, new, &|e| self.value(from, e))?);
+        }
+        for also in self.also_in(from, step.action)? {
+            for (var, update) in &also.updates {
+                let new = there[usize::from(*var)];
+                say(*var, may_become(update, new, &|e| self.step_value(from, step, e))?);
+            }
+        }
+        let unchanged = |at: usize| here[at] == there[at];
+        Ok(allowed.iter().enumerate().all(|(at, allowed)| allowed.unwrap_or_else(|| unchanged(at))))
+    }
+
+    /// The clauses that add something to an action's transitions from a state that does not absorb.
+    fn also_in(&self, state: StateId, action: ActionId) -> Result<Vec<&'p Also>, Stop> {
+        let mut found = Vec::new();
+        for also in &self.system.also {
+            if also.actions.contains(&action) && self.holds(state, &also.guard)? {
+                found.push(also);
+            }
+        }
+        Ok(found)
+    }
+
+    /// The value of an expression over a step from a state.
+    fn step_value(&self, from: StateId, step: Step, e: &Expr<StepLeaf>) -> Result<Value, Stop> {
+        let edges = self.system.edges.as_ref().zip(step.edge);
+        let read = |leaf: &StepLeaf| match *leaf {
+            StepLeaf::State(leaf) => self.leaf(from, leaf),
+            StepLeaf::Took(action) => Some(Value::Bool(action == step.action)),
+            StepLeaf::Attribute(attribute) => {
+                Some(Value::Int(edges.map_or(0, |(edges, at)| edges.number(at, attribute))))
+            }
+        };
+        eval(e, &read).ok_or_else(|| no_value(self.system).into())
     }
 
     fn value(&self, state: StateId, e: &Expr<Leaf>) -> Result<Value, Stop> {
@@ -232,36 +274,63 @@ impl<'p> Graph<'p> {
             }
             let mut targets = vec![here.to_vec()];
             for (var, update) in &clause.updates {
-                let choices = self.choices(state, *var, update)?;
-                if targets.len().saturating_mul(choices.len()) > self.limit {
-                    return Err(Stop::Budget);
-                }
-                targets = targets
-                    .iter()
-                    .flat_map(|target| choices.iter().map(move |&choice| with(target, *var, choice)))
-                    .collect();
+                targets = self.extended(targets, *var, update, &|e| self.value(state, e))?;
             }
-            found.extend(targets.into_iter().map(|target| (clause.actions.as_slice(), target)));
+            if system.also.is_empty() {
+                found.extend(targets.into_iter().map(|target| (clause.actions.as_slice(), target)));
+                continue;
+            }
+            for action in &clause.actions {
+                let step = Step { action: *action, edge: None };
+                let targets = self.besides(state, step, targets.clone())?;
+                found.extend(targets.into_iter().map(|target| (std::slice::from_ref(action), target)));
+            }
         }
-        if let Some(edges) = &system.edges {
-            let to = |to| with(here, edges.var, Value::Enum(to));
-            found.extend(
-                edges
-                    .of(position(here, edges.var))
-                    .iter()
-                    .map(|e| (std::slice::from_ref(&e.action), to(e.to))),
-            );
+        let Some(edges) = &system.edges else { return Ok(found) };
+        for ((at, edge), own) in
+            edges.numbered(position(here, edges.var)).zip(edges.of(position(here, edges.var)))
+        {
+            let moved = vec![with(here, edges.var, Value::Enum(edge.to))];
+            let targets = self.besides(state, Step { action: edge.action, edge: Some(at) }, moved)?;
+            found.extend(targets.into_iter().map(|target| (std::slice::from_ref(&own.action), target)));
         }
         Ok(found)
     }
 
+    /// Targets with what a step to them does besides.
+    fn besides(&self, from: StateId, step: Step, targets: Vec<Vec<Value>>) -> Result<Vec<Vec<Value>>, Stop> {
+        let mut targets = targets;
+        for also in self.also_in(from, step.action)? {
+            for (var, update) in &also.updates {
+                targets = self.extended(targets, *var, update, &|e| self.step_value(from, step, e))?;
+            }
+        }
+        Ok(targets)
+    }
+
+    /// Targets with each of the values that an update allows.
+    fn extended<L>(
+        &self,
+        targets: Vec<Vec<Value>>,
+        var: VarId,
+        update: &Update<L>,
+        value: &ValueOf<'_, L>,
+    ) -> Result<Vec<Vec<Value>>, Stop> {
+        let choices = self.choices(var, update, value)?;
+        if targets.len().saturating_mul(choices.len()) > self.limit {
+            return Err(Stop::Budget);
+        }
+        let each = targets.iter().flat_map(|target| choices.iter().map(|&choice| with(target, var, choice)));
+        Ok(each.collect())
+    }
+
     /// What an update allows, within the variable's type. Of real numbers there are too many between two.
-    fn choices(&self, state: StateId, var: VarId, update: &Update) -> Result<Vec<Value>, Stop> {
+    fn choices<L>(&self, var: VarId, update: &Update<L>, value: &ValueOf<'_, L>) -> Result<Vec<Value>, Stop> {
         let ty = &self.system.vars.get(var).ok_or_else(|| no_value(self.system))?.ty;
         let mut values = match update {
-            Update::Assign(e) => vec![self.value(state, e)?],
-            Update::OneOf(es) => es.iter().map(|e| self.value(state, e)).collect::<Result<_, _>>()?,
-            Update::Within(lo, hi) => match (ty, self.value(state, lo)?, self.value(state, hi)?) {
+            Update::Assign(e) => vec![value(e)?],
+            Update::OneOf(es) => es.iter().map(value).collect::<Result<_, _>>()?,
+            Update::Within(lo, hi) => match (ty, value(lo)?, value(hi)?) {
                 (Type::Range { lo: least, hi: most }, Value::Int(lo), Value::Int(hi)) => {
                     integers(lo.max(*least), hi.min(*most), self.limit)?
                 }
@@ -355,6 +424,18 @@ fn read(values: &[Value], labels: &[bool], leaf: Leaf) -> Option<Value> {
     match leaf {
         Leaf::Var(v) => values.get(usize::from(v)).copied(),
         Leaf::Label(l) => labels.get(usize::from(l)).copied().map(Value::Bool),
+    }
+}
+
+/// Whether a variable may get this value of its type.
+fn may_become<L>(update: &Update<L>, new: Value, value: &ValueOf<'_, L>) -> Result<bool, Stop> {
+    match update {
+        Update::Assign(e) => Ok(value(e)? == new),
+        Update::OneOf(es) => {
+            let values: Vec<Value> = es.iter().map(value).collect::<Result<_, _>>()?;
+            Ok(values.contains(&new))
+        }
+        Update::Within(lo, hi) => Ok(value(lo)? <= new && new <= value(hi)?),
     }
 }
 

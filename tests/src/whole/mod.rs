@@ -173,6 +173,8 @@ mod tests {
             ": real",
             " M[",
             "on *",
+            "also on *",
+            "length div",
             "init",
             "div",
         ];

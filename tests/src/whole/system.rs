@@ -52,7 +52,11 @@ impl System {
         let (head, items) = match random.below(4) {
             0 | 1 => (String::new(), system.plain(random)),
             2 => system.map(random, whole),
-            _ => (system.graph(random, whole), String::new()),
+            _ => {
+                let (head, numbered) = system.graph(random, whole);
+                let items = system.fuel(random, numbered);
+                (head, items)
+            }
         };
         let items = items + &system.further(random);
         whole.text += &format!("system {} {head}{{\n{items}}}\n", system.name);
@@ -136,11 +140,32 @@ impl System {
             let rows: Vec<String> = rows.iter().map(|row| format!("\"{row}\"")).collect();
             format!("= grid {{ {} }} ", rows.join(" "))
         };
+        items += &self.fuel(random, false);
         (head, items)
     }
 
-    /// A graph in a file of its own.
-    fn graph(&mut self, random: &mut Random, whole: &mut Whole) -> String {
+    /// Something that goes with the moves, and what the moves do to it.
+    fn fuel(&mut self, random: &mut Random, numbered: bool) -> String {
+        if random.flip() {
+            return String::new();
+        }
+        self.vars.push(("fuel".to_owned(), Kind::Range(0, 3)));
+        let goal = if self.labels.iter().any(|label| label == "goal") { "goal" } else { "fuel < 1" };
+        let action = &self.actions[0];
+        let by = if numbered { "length div 3" } else { "1" };
+        "  state fuel: 0..3;\n".to_owned()
+            + &match random.below(3) {
+                0 => format!("  also on * {{ fuel' = fuel - {by}; }}\n"),
+                1 => format!(
+                    "  also on * when !{goal} {{ fuel' = fuel - (if action == {action} then 2 else 1); }}\n  \
+                     also on * when {goal} {{ fuel' in {{fuel, 3}}; }}\n"
+                ),
+                _ => format!("  also on {action} {{ fuel' in fuel - 1..fuel; }}\n"),
+            }
+    }
+
+    /// A graph in a file of its own; whether its transitions carry numbers.
+    fn graph(&mut self, random: &mut Random, whole: &mut Whole) -> (String, bool) {
         let nodes = &["n0", "n1", "17", "room A"][..2 + random.below(3)];
         let actions = &["go", "turn left", "wait"][..1 + random.below(3)];
         let edge = |random: &mut Random| {
@@ -148,9 +173,21 @@ impl System {
             format!("[\"{from}\", \"{}\", \"{to}\"]", random.one(actions))
         };
         if random.once_in(3) {
-            return self.roadmap(random, whole, nodes);
+            return (self.roadmap(random, whole, nodes), false);
         }
-        let edges: Vec<String> = (0..1 + random.below(7)).map(|_| edge(random)).collect();
+        let described = |random: &mut Random| {
+            let (from, to) = (random.one(nodes), random.one(nodes));
+            // The number follows from the ends, so that there are no two of one transition.
+            let length = from.len() + to.len();
+            let action = random.one(actions);
+            format!(
+                "{{\"from\": \"{from}\", \"action\": \"{action}\", \"to\": \"{to}\", \"length\": {length}}}"
+            )
+        };
+        let numbered = random.once_in(3);
+        let edges: Vec<String> = (0..1 + random.below(7))
+            .map(|_| if numbered { described(random) } else { edge(random) })
+            .collect();
         let some = random.one(nodes);
         let text = format!(
             "{{\"states\": {nodes:?}, \"actions\": {actions:?}, {} \"transitions\": [{}], \"labels\": {{\"goal\": [{some:?}]}}}}",
@@ -163,7 +200,7 @@ impl System {
         self.vars.push(("node".to_owned(), Kind::Enum(nodes.iter().map(|node| quoted(node)).collect())));
         self.labels.push("goal".to_owned());
         self.actions = actions.iter().map(|name| quoted(name)).collect();
-        head
+        (head, numbered)
     }
 
     /// A graph as networkx or Nav2 have it, with these nodes.
@@ -223,8 +260,12 @@ impl System {
     fn further(&mut self, random: &mut Random) -> String {
         // Rules of maps and transitions of graphs are there already.
         let is_plain = self.labels.is_empty();
-        let own: Vec<(String, Kind)> =
-            self.vars.iter().filter(|(name, _)| name != "crash").cloned().collect();
+        let own: Vec<(String, Kind)> = self
+            .vars
+            .iter()
+            .filter(|(name, _)| !["crash", "fuel"].contains(&name.as_str()))
+            .cloned()
+            .collect();
         let mut items = String::new();
         for _ in 0..if is_plain { 1 + random.below(5) } else { random.below(2) } {
             let action = self.actions[random.below(self.actions.len())].clone();

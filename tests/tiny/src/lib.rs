@@ -3,8 +3,8 @@
 //! are larger ones, in the workspace's `tests`.
 
 use hyperplan_problem::{
-    ActionId, Expr, FormulaId, Interval, Leaf, NoFiles, Node, Objective, Overrides, PathId, PathLeaf,
-    Problem, State, System, Trace, Update, Value, read,
+    ActionId, Also, Expr, FormulaId, Interval, Leaf, NoFiles, Node, Objective, Overrides, PathId, PathLeaf,
+    Problem, State, StepLeaf, System, Trace, Update, Value, VarId, read,
 };
 use hyperplan_syntax::SourceMap;
 use proptest::prelude::*;
@@ -41,10 +41,18 @@ pub fn system() -> impl Strategy<Value = String> {
     let clause = (actions, guard, update)
         .prop_map(|(actions, guard, update)| format!("on {actions} when {guard} {{ {update} }}"));
     let absorb = prop_oneof![Just(String::new()), Just("absorb x == 2;".to_owned())];
-    (prop::collection::vec(clause, 1..6), absorb, 0..3).prop_map(|(clauses, absorb, init)| {
+    let also = prop_oneof![
+        3 => Just(String::new()),
+        1 => Just("also on * { n' = n - 1; }".to_owned()),
+        1 => Just("also on l when b { n' in {0, n + 1}; } also on r | l when !b { n' in n - 1..x; }".to_owned()),
+        1 => Just("also on r when x > 0 { n' = if action == r then x else 0; }".to_owned()),
+    ];
+    (prop::collection::vec(clause, 1..6), absorb, also, 0..3).prop_map(|(clauses, absorb, also, init)| {
         let clauses = clauses.join(" ");
+        // A variable that only `also` changes is there where one does: it makes more states.
+        let (more, n) = if also.is_empty() { ("", "") } else { (", n: 0..2", "& n == 1") };
         format!(
-            "system S {{ state x: 0..2, b: bool; action l, r; init x <= {init} & !b; {absorb} {clauses} }}"
+            "system S {{ state x: 0..2, b: bool{more}; action l, r; init x <= {init} & !b{n}; {absorb} {clauses} {also} }}"
         )
     })
 }
@@ -103,38 +111,72 @@ pub fn transitions(system: &System, from: &State) -> Vec<(ActionId, State)> {
     }
     let mut found = Vec::new();
     for clause in system.clauses.iter().filter(|clause| holds_in(system, &clause.guard, from)) {
-        let mut all = vec![from.clone()];
-        for (var, update) in &clause.updates {
-            let of = |e: &Expr<Leaf>| value(system, e, from).expect("it has a value");
-            let values: Vec<Value> = match update {
-                Update::Assign(e) => vec![of(e)],
-                Update::OneOf(es) => es.iter().map(of).collect(),
-                Update::Within(lo, hi) => match (of(lo), of(hi)) {
-                    (Value::Int(lo), Value::Int(hi)) => (lo..=hi).map(Value::Int).collect(),
-                    _ => unreachable!("ranges are of integers"),
-                },
-            };
-            let values: Vec<Value> =
-                values.into_iter().filter(|&value| system.vars[*var].ty.contains(value)).collect();
-            let with = |state: &State, value: Value| {
-                let mut next = state.clone();
-                next[usize::from(*var)] = value;
-                next
-            };
-            all = all.iter().flat_map(|state| values.iter().map(|&v| with(state, v))).collect();
+        for &action in &clause.actions {
+            let mut all = vec![from.clone()];
+            for (var, update) in &clause.updates {
+                let of = |e: &Expr<Leaf>| value(system, e, from).expect("it has a value");
+                all = extended(system, &all, *var, update, &of);
+            }
+            let also = |also: &&Also| also.actions.contains(&action) && holds_in(system, &also.guard, from);
+            for (var, update) in system.also.iter().filter(also).flat_map(|also| &also.updates) {
+                let of = |e: &Expr<StepLeaf>| step_value(system, e, from, action);
+                all = extended(system, &all, *var, update, &of);
+            }
+            found.extend(all.into_iter().map(|to| (action, to)));
         }
-        found.extend(all.iter().flat_map(|to| clause.actions.iter().map(|&action| (action, to.clone()))));
     }
     found.sort();
     found.dedup();
     found
 }
 
+/// The value of an expression over a step that follows no edge.
+fn step_value(system: &System, expr: &Expr<StepLeaf>, from: &State, action: ActionId) -> Value {
+    let value = expr.evaluate(&mut |leaf| match *leaf {
+        StepLeaf::State(leaf) => read_leaf(system, leaf, from),
+        StepLeaf::Took(taken) => Some(Value::Bool(taken == action)),
+        StepLeaf::Attribute(_) => Some(Value::Int(0)),
+    });
+    value.expect("it has a value")
+}
+
+/// The states with each of the values that an update gives a variable.
+fn extended<L>(
+    system: &System,
+    states: &[State],
+    var: VarId,
+    update: &Update<L>,
+    of: &dyn Fn(&Expr<L>) -> Value,
+) -> Vec<State> {
+    let values: Vec<Value> = match update {
+        Update::Assign(e) => vec![of(e)],
+        Update::OneOf(es) => es.iter().map(of).collect(),
+        Update::Within(lo, hi) => match (of(lo), of(hi)) {
+            (Value::Int(lo), Value::Int(hi)) => (lo..=hi).map(Value::Int).collect(),
+            _ => unreachable!("ranges are of integers"),
+        },
+    };
+    let values: Vec<Value> =
+        values.into_iter().filter(|&value| system.vars[var].ty.contains(value)).collect();
+    let with = |state: &State, value: Value| {
+        let mut next = state.clone();
+        next[usize::from(var)] = value;
+        next
+    };
+    states.iter().flat_map(|state| values.iter().map(|&v| with(state, v))).collect()
+}
+
 /// The states that a system of [`system`] starts in.
 #[must_use]
 pub fn starts(system: &System) -> Vec<State> {
-    let all = (0..3).flat_map(|x| [false, true].map(|b| State::from([Value::Int(x), Value::Bool(b)])));
-    all.filter(|state| holds_in(system, &system.init, state)).collect()
+    let mut all = vec![Vec::new()];
+    for var in &system.vars {
+        let values = [false, true].map(Value::Bool).into_iter().chain((0..3).map(Value::Int));
+        let values: Vec<Value> = values.filter(|value| var.ty.contains(*value)).collect();
+        let with = |state: &Vec<Value>, value: &Value| state.iter().copied().chain([*value]).collect();
+        all = all.iter().flat_map(|state| values.iter().map(|value| with(state, value))).collect();
+    }
+    all.into_iter().map(State::from).filter(|state| holds_in(system, &system.init, state)).collect()
 }
 
 /// Every path of so many steps.

@@ -3,7 +3,7 @@
 //! A variable with bounds is a real that starts as one of its integers, and integer updates keep it one. Where integers
 //! have no bounds there is no list to start from, and reals know no rounding.
 
-use hyperplan_problem::{Expr, Node, Objective, Problem, System, Type, Update};
+use hyperplan_problem::{Expr, Node, Objective, Problem, System, Type};
 use hyperplan_relevance::Error;
 use hyperplan_space::bounds;
 
@@ -37,17 +37,18 @@ fn demand_of(system: &System) -> Result<(), Error> {
     }
     let what = format!("system {name}");
     let clauses = system.clauses.iter();
-    let updates = clauses.clone().flat_map(|clause| &clause.updates).flat_map(|(_, update)| match update {
-        Update::Assign(value) => vec![value],
-        Update::OneOf(values) => values.iter().collect(),
-        Update::Within(lo, hi) => vec![lo, hi],
-    });
+    let updates = clauses.clone().flat_map(|clause| &clause.updates).flat_map(|(_, update)| update.exprs());
     let labels = system.labels.iter().map(|label| &label.expr);
     let rest = [&system.init, &system.absorb];
     let all =
         clauses.map(|clause| &clause.guard).chain(updates).chain(labels).chain(&system.observe).chain(rest);
-    for expr in all {
+    for expr in all.chain(system.also.iter().map(|also| &also.guard)) {
         demand_exact(&what, expr)?;
+    }
+    for (_, update) in system.also.iter().flat_map(|also| &also.updates) {
+        for expr in update.exprs() {
+            demand_exact(&what, expr)?;
+        }
     }
     Ok(())
 }

@@ -65,6 +65,10 @@ fn describe(system: &System, graph: &Graph, findings: &Findings, found: &mut Vec
                 .with_help("the outcome is then nondeterministic; give what is new an action of its own"),
         );
     }
+    for &clause in &findings.idle {
+        let message = "this clause applies in no reachable state";
+        found.push(Diagnostic::warning("idle-clause", system.also[clause].span, message));
+    }
     if let Some(&(first, state)) = findings.lost.first() {
         found.push(lost(system, findings.lost.len(), first, &example(state)));
     }

@@ -95,7 +95,7 @@ fn is_total(system: &System) -> bool {
 fn ask(asker: &mut Asker<'_>, tie: &Tie) -> Option<Diagnostic> {
     let objective = asker.objective;
     let original = &asker.problem.systems[objective.paths[tie.follower].system];
-    let (system, stuck) = total(original);
+    let (system, stuck) = total(original).ok()?;
     let mut problem = asker.problem.clone();
     let id = problem.systems.push_and_get_key(system);
     let formula = question(asker.problem, objective, tie, stuck);

@@ -1,6 +1,7 @@
 //! A system in which every action is possible everywhere: what the original cannot do leads to being *stuck*.
 
 use hyperplan_problem::{ActionId, Clause, Comparison, Expr, Leaf, System, Type, Update, Value, Var, VarId};
+use hyperplan_space::{TooLarge, Updates, besides, no_number};
 
 /// The value of the new variable before anything impossible was tried.
 const FREE: i64 = 0;
@@ -10,7 +11,10 @@ pub(super) const JUST_STUCK: i64 = 1;
 const STUCK: i64 = 2;
 
 /// The system with a variable that says whether its path got stuck; the other variables then keep their values.
-pub(super) fn total(system: &System) -> (System, VarId) {
+///
+/// # Errors
+/// [`TooLarge`] if transitions do so much besides that there are too many ways to make them.
+pub(super) fn total(system: &System) -> Result<(System, VarId), TooLarge> {
     let mut total = system.clone();
     let span = system.span;
     let ty = Type::Range { lo: FREE, hi: STUCK };
@@ -19,19 +23,15 @@ pub(super) fn total(system: &System) -> (System, VarId) {
     let also_free = |e: &Expr<Leaf>| Expr::And(vec![free.clone(), e.clone()]);
     total.init = also_free(&system.init);
     total.absorb = also_free(&system.absorb);
-    for clause in &mut total.clauses {
-        clause.guard = also_free(&clause.guard);
+    total.clauses.clear();
+    for &action in &system.actions {
+        for (guard, updates) in ways(system, action)? {
+            let guard = also_free(&guard);
+            total.clauses.push(Clause { actions: vec![action], guard, updates, span, generated: true });
+        }
     }
-    // What is listed has no guard to say "free".
-    if let Some(edges) = total.edges.take() {
-        total.clauses.extend(edges.iter().map(|(from, edge)| Clause {
-            actions: vec![edge.action],
-            guard: also_free(&at(edges.var, from)),
-            updates: vec![(edges.var, Update::Assign(Expr::Const(Value::Enum(edge.to))))],
-            span,
-            generated: true,
-        }));
-    }
+    total.also.clear();
+    total.edges = None;
     let set = |value| vec![(var, Update::Assign(Expr::Const(Value::Int(value))))];
     for &action in &system.actions {
         let cannot = Expr::Not(Box::new(enabled(system, action)));
@@ -41,7 +41,7 @@ pub(super) fn total(system: &System) -> (System, VarId) {
     let (guard, updates) = (Expr::Not(Box::new(free)), set(STUCK));
     let actions = system.actions.clone();
     total.clauses.push(Clause { actions, guard, updates, span, generated: true });
-    (total, var)
+    Ok((total, var))
 }
 
 /// That the new variable has this value.
@@ -56,24 +56,37 @@ fn at(var: VarId, position: u32) -> Expr<Leaf> {
     Expr::Compare(Comparison::Eq, Box::new(Expr::Leaf(Leaf::Var(var))), Box::new(value))
 }
 
-/// Where a system has a transition with that action.
-pub(super) fn enabled(system: &System, action: ActionId) -> Expr<Leaf> {
-    let clauses = system.clauses.iter().filter(|c| c.actions.contains(&action));
-    let mut ways: Vec<Expr<Leaf>> = clauses.map(|clause| possible(system, clause)).collect();
-    if let Some(edges) = &system.edges {
-        let own = edges.iter().filter(|(_, edge)| edge.action == action);
-        let mut sources: Vec<u32> = own.map(|(from, _)| from).collect();
-        sources.dedup();
-        ways.extend(sources.into_iter().map(|from| at(edges.var, from)));
+/// The guards and updates of the transitions with an action, from states that do not absorb.
+fn ways(system: &System, action: ActionId) -> Result<Vec<(Expr<Leaf>, Updates)>, TooLarge> {
+    let mut ways = Vec::new();
+    let own = besides(system, action, &no_number)?;
+    for clause in system.clauses.iter().filter(|c| c.actions.contains(&action)) {
+        let with = |besides: &Updates| clause.updates.iter().chain(besides).cloned().collect();
+        ways.extend(own.iter().map(|besides| (clause.guard.clone(), with(besides))));
     }
+    let Some(edges) = &system.edges else { return Ok(ways) };
+    for (position, (from, edge)) in edges.iter().enumerate().filter(|(_, (_, edge))| edge.action == action) {
+        let number = |attribute| Expr::Const(Value::Int(edges.number(position, attribute)));
+        for mut updates in besides(system, action, &number)? {
+            updates.push((edges.var, Update::Assign(Expr::Const(Value::Enum(edge.to)))));
+            ways.push((at(edges.var, from), updates));
+        }
+    }
+    Ok(ways)
+}
+
+/// Where a system that is not too large for [`total`] has a transition with that action.
+pub(super) fn enabled(system: &System, action: ActionId) -> Expr<Leaf> {
+    let ways = ways(system, action).unwrap_or_default();
+    let mut ways: Vec<Expr<Leaf>> = ways.iter().map(|(guard, own)| possible(system, guard, own)).collect();
     ways.push(system.absorb.clone());
     Expr::Or(ways)
 }
 
-/// Where a clause has an outcome: its guard holds, and each update has a value in range.
-fn possible(system: &System, clause: &Clause) -> Expr<Leaf> {
-    let mut parts = vec![clause.guard.clone()];
-    for (var, update) in &clause.updates {
+/// Where there is an outcome: the guard holds, and each update has a value in range.
+fn possible(system: &System, guard: &Expr<Leaf>, updates: &Updates) -> Expr<Leaf> {
+    let mut parts = vec![guard.clone()];
+    for (var, update) in updates {
         if let Update::Within(least, greatest) = update {
             parts.push(at_most(least, greatest));
         }

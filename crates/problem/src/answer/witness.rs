@@ -324,6 +324,7 @@ mod tests {
             ],
             actions: vec![ActionId(0), ActionId(1)],
             clauses: Vec::new(),
+            also: Vec::new(),
             edges: None,
             init: Expr::TRUE,
             labels: ti_vec![],

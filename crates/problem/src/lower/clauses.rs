@@ -19,6 +19,20 @@ pub(super) fn lower_clause(
     system: &System,
     actions: &Actions,
 ) -> Option<Clause> {
+    let (listed, guard) = head(cx, clause, system, actions);
+    let updates: Vec<_> = clause.updates.iter().map(|u| lower_update(cx, u)).collect();
+    let updates = updates.into_iter().collect::<Option<Vec<_>>>()?;
+    repeated_update(cx, clause)?;
+    Some(Clause { actions: listed?, guard: guard?, updates, span: clause.span, generated: false })
+}
+
+/// The actions and the guard; `None` after a message.
+pub(super) fn head(
+    cx: &mut StateContext,
+    clause: &ast::Clause,
+    system: &System,
+    actions: &Actions,
+) -> (Option<Vec<ActionId>>, Option<Expr<Leaf>>) {
     let listed = match &clause.actions {
         None => Some(system.actions.clone()),
         Some(names) => clause_actions(cx, names, system, actions),
@@ -27,10 +41,7 @@ pub(super) fn lower_clause(
         None => Some(Expr::TRUE),
         Some(guard) => truth(cx, guard),
     };
-    let updates: Vec<_> = clause.updates.iter().map(|u| lower_update(cx, u)).collect();
-    let updates = updates.into_iter().collect::<Option<Vec<_>>>()?;
-    repeated_update(cx, clause)?;
-    Some(Clause { actions: listed?, guard: guard?, updates, span: clause.span, generated: false })
+    (listed, guard)
 }
 
 fn clause_actions(
@@ -42,23 +53,34 @@ fn clause_actions(
     let mut listed = Vec::new();
     let mut complete = true;
     for name in names {
-        match actions.get(&name.name).filter(|id| system.actions.contains(id)) {
+        match known_action(cx, &name.name, name.span, system, actions) {
             Some(id) if !listed.contains(&id) => listed.push(id),
             Some(_) => {}
-            None => {
-                complete = false;
-                let message = format!("no action `{}` in system {}", name.name, system.name);
-                let candidates = system.actions.iter().map(|id| actions.names[*id].as_str());
-                let diagnostic = Diagnostic::error("unknown-action", name.span, message);
-                cx.diagnostics.push(suggest(diagnostic, &name.name, candidates));
-            }
+            None => complete = false,
         }
     }
     complete.then_some(listed)
 }
 
+/// An action of the system, or `None` after a message.
+pub(super) fn known_action(
+    cx: &mut StateContext,
+    name: &str,
+    span: Span,
+    system: &System,
+    actions: &Actions,
+) -> Option<ActionId> {
+    let known = actions.get(name).filter(|id| system.actions.contains(id));
+    if known.is_none() {
+        let message = format!("no action `{name}` in system {}", system.name);
+        let candidates = system.actions.iter().map(|id| actions.names[*id].as_str());
+        cx.diagnostics.push(suggest(Diagnostic::error("unknown-action", span, message), name, candidates));
+    }
+    known
+}
+
 /// Refuses two updates of one variable.
-fn repeated_update(cx: &mut StateContext, clause: &ast::Clause) -> Option<()> {
+pub(super) fn repeated_update(cx: &mut StateContext, clause: &ast::Clause) -> Option<()> {
     for (index, update) in clause.updates.iter().enumerate() {
         if let Some(first) = clause.updates[..index].iter().find(|u| u.var.name == update.var.name) {
             let message = format!("a second update of `{}`", update.var.name);
@@ -70,12 +92,19 @@ fn repeated_update(cx: &mut StateContext, clause: &ast::Clause) -> Option<()> {
 }
 
 fn lower_update(cx: &mut StateContext, update: &ast::Update) -> Option<(VarId, Update)> {
-    let id = match cx.names.get(&update.var.name).copied() {
-        Some((Leaf::Var(id), _)) => id,
+    let id = updated(cx, update)?;
+    let ty = cx.vars[id].ty.clone();
+    Some((id, new_value(cx, &update.value, &ty)?))
+}
+
+/// The variable that an update is of.
+pub(super) fn updated(cx: &mut StateContext, update: &ast::Update) -> Option<VarId> {
+    match cx.names.get(&update.var.name).copied() {
+        Some((Leaf::Var(id), _)) => Some(id),
         Some((Leaf::Label(_), declared)) => {
             let message = format!("`{}` is a label; only variables can be updated", update.var.name);
             let diagnostic = Diagnostic::error("not-a-variable", update.var.span, message);
-            return cx.error(diagnostic.with_related(declared, "declared here"));
+            cx.error(diagnostic.with_related(declared, "declared here"))
         }
         None => {
             if !cx.poisoned {
@@ -85,30 +114,32 @@ fn lower_update(cx: &mut StateContext, update: &ast::Update) -> Option<(VarId, U
                     suggest(diagnostic, &update.var.name, cx.vars.iter().map(|v| v.name.as_str()));
                 cx.diagnostics.push(diagnostic);
             }
-            return None;
+            None
         }
-    };
-    let ty = cx.vars[id].ty.clone();
-    let value = match &update.value {
-        UpdateValue::Assign(e) => Update::Assign(of_type(cx, e, &ty)?),
+    }
+}
+
+/// What becomes of a variable of that type.
+pub(super) fn new_value<C: Context>(cx: &mut C, value: &UpdateValue, ty: &Type) -> Option<Update<C::Leaf>> {
+    Some(match value {
+        UpdateValue::Assign(e) => Update::Assign(of_type(cx, e, ty)?),
         UpdateValue::Choose(Set::List(members, span)) if members.is_empty() => {
             return cx.error(Diagnostic::error("empty-set", *span, "the set is empty"));
         }
         UpdateValue::Choose(Set::List(members, _)) => {
-            let values: Vec<_> = members.iter().map(|m| of_type(cx, m, &ty)).collect();
+            let values: Vec<_> = members.iter().map(|m| of_type(cx, m, ty)).collect();
             Update::OneOf(values.into_iter().collect::<Option<Vec<_>>>()?)
         }
-        UpdateValue::Choose(Set::Range(lo, hi)) => within(cx, lo, hi, &ty)?,
+        UpdateValue::Choose(Set::Range(lo, hi)) => within(cx, lo, hi, ty)?,
         UpdateValue::Choose(Set::Enabled(_, span)) => {
             let message = "`enabled[...]` is a set of actions, not of values";
             return cx.error(Diagnostic::error("misplaced-path", *span, message));
         }
-    };
-    Some((id, value))
+    })
 }
 
 /// An expression of the variable's type.
-fn of_type(cx: &mut StateContext, e: &ast::Expr, ty: &Type) -> Option<Expr<Leaf>> {
+fn of_type<C: Context>(cx: &mut C, e: &ast::Expr, ty: &Type) -> Option<Expr<C::Leaf>> {
     let hint = match ty {
         Type::Enum(values) => Some(values),
         Type::Bool | Type::Range { .. } | Type::Int => None,
@@ -131,7 +162,7 @@ fn expected(ty: &Type) -> String {
 }
 
 /// `v' in LO..HI`
-fn within(cx: &mut StateContext, lo: &ast::Expr, hi: &ast::Expr, ty: &Type) -> Option<Update> {
+fn within<C: Context>(cx: &mut C, lo: &ast::Expr, hi: &ast::Expr, ty: &Type) -> Option<Update<C::Leaf>> {
     let span: Span = lo.span.to(hi.span);
     let (from, to) = match ty {
         Type::Range { .. } | Type::Int => {

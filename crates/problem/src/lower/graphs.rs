@@ -11,6 +11,7 @@ use super::diagnostics::suggest;
 use super::env::Env;
 use super::files::load_text;
 use super::json::{Kind, Piece};
+use super::limits::MAX_RANGE;
 use crate::edges::{Edge, Edges};
 use crate::expr::{Comparison, Expr, Leaf, TupleSet, Type, Value};
 use crate::ids::{ActionId, VarId};
@@ -29,6 +30,12 @@ const MAX_ERRORS: usize = 10;
 
 /// Most states that a graph may have.
 const MAX_STATES: usize = 4_000_000;
+
+/// Most attributes of one graph: each has a number for every transition.
+const MAX_ATTRIBUTES: usize = 64;
+
+/// What a transition with attributes has in any case.
+const ENDS: [&str; 3] = ["from", "action", "to"];
 
 /// What a graph file may say.
 const MEMBERS: [&str; 5] = ["states", "actions", "initial", "transitions", "labels"];
@@ -92,6 +99,13 @@ struct Reader<'a, 'e> {
 /// Names in their order, and where each stands.
 type Table = IndexMap<String, Span, FxBuildHasher>;
 
+/// The transitions with their numbers, and what the numbers are called.
+#[derive(Default)]
+struct Listed {
+    edges: Vec<(u32, Edge, Vec<i64>)>,
+    attributes: Table,
+}
+
 impl Reader<'_, '_> {
     fn error(&mut self, diagnostic: Diagnostic) {
         self.errors += 1;
@@ -137,7 +151,7 @@ impl Reader<'_, '_> {
             actions.iter().flat_map(Table::keys).map(|name| self.env.actions.intern(name)).collect();
         let edges = match (&states, &actions, transitions) {
             (Some(states), Some(actions), Some(all)) => self.transitions(all, states, actions, &ids),
-            _ => Vec::new(),
+            _ => Listed::default(),
         };
         let none = Table::default();
         let known = states.as_ref().unwrap_or(&none);
@@ -152,11 +166,12 @@ impl Reader<'_, '_> {
         self.end(root.start());
         let states = states?;
         let count = states.len();
+        let names: Vec<String> = edges.attributes.into_keys().collect();
         let node = Var { name: "node".into(), ty: Type::Enum(states.into_keys().collect()), span };
         Some(Base {
             vars: [node].into_iter().collect(),
             actions: ids,
-            edges: Some(Edges::new(NODE, count, edges)),
+            edges: Some(Edges::with_attributes(NODE, count, &names, edges.edges)),
             labels,
             init,
             poisoned: self.errors > 0,
@@ -298,34 +313,139 @@ impl Reader<'_, '_> {
         position
     }
 
-    fn transitions(
-        &mut self,
-        all: Piece<'_>,
-        states: &Table,
-        actions: &Table,
-        ids: &[ActionId],
-    ) -> Vec<(u32, Edge)> {
+    fn transitions(&mut self, all: Piece<'_>, states: &Table, actions: &Table, ids: &[ActionId]) -> Listed {
         let all = self.list(all, "transition").unwrap_or_default();
-        let mut edges = Vec::with_capacity(all.len());
+        let mut listed = Listed { edges: Vec::with_capacity(all.len()), attributes: Table::default() };
+        let mut places = Vec::new();
         for transition in all {
-            let parts = transition.array();
-            let Some([from, action, to]) = parts.as_deref() else {
-                let found = match parts {
-                    Some(parts) => format!("a list of {}", parts.len()),
-                    None => transition.describe().to_owned(),
-                };
-                let message = format!("a transition is `[STATE, ACTION, STATE]`, not {found}");
-                self.bad(transition.span(), message);
-                continue;
+            let (ends, numbers) = match transition.kind() {
+                Kind::Object => self.described(transition, &mut listed.attributes),
+                _ => (self.triple(transition), Vec::new()),
             };
-            let from = self.known(*from, states, "state");
-            let action = self.known(*action, actions, "action");
-            let to = self.known(*to, states, "state");
+            let Some([from, action, to]) = ends else { continue };
+            let from = self.known(from, states, "state");
+            let action = self.known(action, actions, "action");
+            let to = self.known(to, states, "state");
             if let (Some(from), Some(action), Some(to)) = (from, action, to) {
-                edges.push((from, Edge { action: ids[action as usize], to }));
+                listed.edges.push((from, Edge { action: ids[action as usize], to }, numbers));
+                places.push(transition.span());
             }
         }
-        edges
+        self.demand_one_number(&listed, &places);
+        listed
+    }
+
+    /// `[STATE, ACTION, STATE]`
+    fn triple<'t>(&mut self, transition: Piece<'t>) -> Option<[Piece<'t>; 3]> {
+        let parts = transition.array();
+        if let Some([from, action, to]) = parts.as_deref() {
+            return Some([*from, *action, *to]);
+        }
+        let found = match parts {
+            Some(parts) => format!("a list of {}", parts.len()),
+            None => transition.describe().to_owned(),
+        };
+        let message = format!(
+            "a transition is `[STATE, ACTION, STATE]` or `{{\"from\": STATE, \"action\": ACTION, \"to\": STATE}}`, not {found}"
+        );
+        self.bad(transition.span(), message);
+        None
+    }
+
+    /// `{"from": STATE, "action": ACTION, "to": STATE, "length": 3}`: the ends, and the numbers in the order of the
+    /// attributes, of which new ones are added to those known.
+    fn described<'t>(
+        &mut self,
+        transition: Piece<'t>,
+        attributes: &mut Table,
+    ) -> (Option<[Piece<'t>; 3]>, Vec<i64>) {
+        let mut ends: [Option<Piece<'t>>; 3] = [None; 3];
+        let mut numbers: Vec<Option<i64>> = Vec::new();
+        for (name, value) in transition.object().unwrap_or_default() {
+            let text = name.text().unwrap_or_default();
+            let again = if let Some(end) = ENDS.iter().position(|end| *end == text) {
+                ends[end].replace(value).is_some()
+            } else if let Some(at) = self.attribute(text.clone(), name, attributes) {
+                numbers.resize(numbers.len().max(at + 1), None);
+                numbers[at].replace(self.number(value).unwrap_or(0)).is_some()
+            } else {
+                false
+            };
+            if again {
+                self.bad(name.span(), format!("`{text}` is given twice"));
+            }
+        }
+        for (end, name) in ends.iter().zip(ENDS) {
+            if end.is_none() {
+                self.bad(transition.span(), format!("the transition has no `{name}`"));
+            }
+        }
+        let [from, action, to] = ends;
+        let ends = from.zip(action).zip(to).map(|((from, action), to)| [from, action, to]);
+        (ends, numbers.into_iter().map(Option::unwrap_or_default).collect())
+    }
+
+    /// The position of an attribute, known or new.
+    fn attribute(&mut self, text: String, name: Piece<'_>, attributes: &mut Table) -> Option<usize> {
+        if let Some(at) = attributes.get_index_of(&text) {
+            return Some(at);
+        }
+        let mut refuse = |message: String, help: &str| {
+            self.error(Diagnostic::error("bad-graph", name.span(), message).with_help(help));
+            None
+        };
+        if !is_name(&text) || text == "node" || text == "action" {
+            return refuse(
+                format!("{text:?} cannot be the name of an attribute"),
+                "names consist of the letters a-z and A-Z, digits, and `_`, are no keywords, and not `node` or `action`",
+            );
+        }
+        if attributes.len() == MAX_ATTRIBUTES {
+            return refuse(
+                format!("the transitions have more than {MAX_ATTRIBUTES} attributes"),
+                "leave out those that nothing reads",
+            );
+        }
+        Some(attributes.insert_full(text, name.span()).0)
+    }
+
+    /// The value of an attribute.
+    fn number(&mut self, value: Piece<'_>) -> Option<i64> {
+        let number = value.digits().and_then(|digits| digits.parse().ok());
+        let number = number.filter(|n: &i64| n.unsigned_abs() <= MAX_RANGE.unsigned_abs());
+        if number.is_none() {
+            let found = if value.kind() == Kind::Number { value.raw() } else { value.describe() };
+            let message = format!("an attribute is an integer within 2^40, not {found}");
+            let diagnostic = Diagnostic::error("bad-graph", value.span(), message);
+            self.error(
+                diagnostic.with_help("write fractions in smaller units, and leave out what is no number"),
+            );
+        }
+        number
+    }
+
+    /// Refuses transitions that differ in their numbers only: nobody could say which of them was taken.
+    fn demand_one_number(&mut self, listed: &Listed, places: &[Span]) {
+        if listed.attributes.is_empty() {
+            return;
+        }
+        let of = |at: usize, attribute: usize| listed.edges[at].2.get(attribute).copied().unwrap_or(0);
+        let mut order: Vec<usize> = (0..listed.edges.len()).collect();
+        order.sort_by_key(|at| (listed.edges[*at].0, listed.edges[*at].1));
+        for pair in order.windows(2) {
+            let &[first, second] = pair else { continue };
+            let ends = |at: usize| (listed.edges[at].0, listed.edges[at].1);
+            let differs = (0..listed.attributes.len()).any(|a| of(first, a) != of(second, a));
+            if ends(first) == ends(second) && differs {
+                let message = "a second transition with these states and this action has other numbers";
+                let diagnostic = Diagnostic::error("bad-graph", places[second], message);
+                self.error(
+                    diagnostic
+                        .with_related(places[first], "the first one")
+                        .with_help("give them actions of different names"),
+                );
+            }
+        }
     }
 
     fn initial(&mut self, piece: Piece<'_>, states: &Table) -> Expr<Leaf> {

@@ -288,7 +288,9 @@ const FREE: &str = "free";
 /// Whether an item is a clause that says where the robot is next.
 fn moves_itself(item: &SystemItem) -> bool {
     match item {
-        SystemItem::On(clause) => clause.updates.iter().any(|u| matches!(u.var.name.as_str(), "x" | "y")),
+        SystemItem::On(clause) | SystemItem::Also(clause) => {
+            clause.updates.iter().any(|u| matches!(u.var.name.as_str(), "x" | "y"))
+        }
         _ => false,
     }
 }

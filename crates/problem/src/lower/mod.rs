@@ -3,6 +3,7 @@
 //! Mistakes are collected, not thrown: one run reports all it can find, and what was reported once is treated as
 //! unknown from there on, so that one mistake does not look like ten. No file is read here: a [`Loader`] does that.
 
+mod also;
 mod base;
 mod bodies;
 mod changes;
@@ -32,6 +33,7 @@ mod semantics;
 mod sets;
 mod special;
 mod state;
+mod step;
 mod system;
 mod template;
 #[cfg(test)]

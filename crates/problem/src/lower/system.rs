@@ -9,7 +9,8 @@ use super::labels;
 use super::limits::{Limits, MAX_RANGE};
 use super::state::{Names, StateContext};
 use super::typed::{Typed, and, or};
-use super::{graphs, maps};
+use super::{also, graphs, maps};
+use crate::edges::Edges;
 use crate::expr::{Expr, Leaf, Type};
 use crate::ids::{ActionId, LabelId, VarId};
 use crate::system::{Label, System, Var};
@@ -36,11 +37,13 @@ pub(crate) fn lower_system(ast: &ast::System, env: &mut Env) -> (System, bool) {
     variables(&mut cx, ast);
     let actions = actions(&mut cx, ast, base.actions, env.actions);
     let labels = lower_labels(&mut cx, ast, base.labels);
+    demand_new_names(&mut cx, base.edges.as_ref());
     let mut system = System {
         name: ast.name.name.clone(),
         vars: cx.vars.clone(),
         actions,
         clauses: base.clauses,
+        also: Vec::new(),
         edges: base.edges,
         init: base.init,
         labels: labels.into_iter().collect(),
@@ -53,6 +56,7 @@ pub(crate) fn lower_system(ast: &ast::System, env: &mut Env) -> (System, bool) {
     for item in &ast.items {
         lower_item(&mut cx, item, &ast.kind, env.actions, &mut system);
     }
+    also::demand_apart(&mut cx, &system);
     (system, cx.poisoned)
 }
 
@@ -99,6 +103,19 @@ fn declare(cx: &mut StateContext, name: &Ident, leaf: Leaf) -> bool {
     }
     cx.names.insert(name.name.clone(), (leaf, name.span));
     true
+}
+
+/// Refuses variables, labels and constants that are called as the numbers of a graph's transitions are.
+fn demand_new_names(cx: &mut StateContext, edges: Option<&Edges>) {
+    for attribute in edges.iter().flat_map(|edges| edges.attributes()) {
+        let name = attribute.name.as_str();
+        let constant = || cx.consts.get(name).map(|constant| constant.span);
+        if let Some(place) = cx.names.get(name).map(|(_, place)| *place).or_else(constant) {
+            let message = format!("`{name}` is an attribute of the graph's transitions");
+            let diagnostic = Diagnostic::error("duplicate-name", place, message);
+            cx.diagnostics.push(diagnostic.with_help("rename one of them"));
+        }
+    }
 }
 
 /// Reads the `state` items.
@@ -220,6 +237,7 @@ fn lower_item(
     match item {
         SystemItem::State(_) | SystemItem::Label(..) | SystemItem::Action(_) => {}
         SystemItem::On(clause) => system.clauses.extend(lower_clause(cx, clause, system, actions)),
+        SystemItem::Also(clause) => system.also.extend(also::lower_also(cx, clause, system, actions)),
         SystemItem::Init(e) => {
             if let Some(e) = truth(cx, e) {
                 system.init = and([std::mem::replace(&mut system.init, Expr::TRUE), e]);

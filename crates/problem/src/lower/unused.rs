@@ -119,7 +119,7 @@ impl<'a> Uses<'a> {
                     }
                 }
             }
-            SystemItem::On(clause) => {
+            SystemItem::On(clause) | SystemItem::Also(clause) => {
                 self.exprs(&clause.guard);
                 for update in &clause.updates {
                     match &update.value {

@@ -111,6 +111,13 @@ impl Parser<'_> {
         self.bump();
         let item = match word {
             "on" => return self.clause(start.span).map(|clause| Some(SystemItem::On(clause))),
+            "also" => {
+                if self.eat_word("on").is_none() {
+                    let help = "what moves do besides is written `also on a | b { x' = x + 1; }`";
+                    return self.fail_with("`on`", Some(help.to_owned()));
+                }
+                return self.clause(start.span).map(|clause| Some(SystemItem::Also(clause)));
+            }
             "state" => SystemItem::State(self.separated(Self::state_decl)?),
             "action" => SystemItem::Action(self.names("the name of an action")?),
             "moves" => SystemItem::Moves(self.names("a move")?),

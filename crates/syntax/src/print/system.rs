@@ -63,6 +63,7 @@ impl Printer<'_> {
     fn item_start(&self, item: &SystemItem) -> usize {
         let behind = match item {
             SystemItem::On(Clause { span, .. })
+            | SystemItem::Also(Clause { span, .. })
             | SystemItem::Legend { span, .. }
             | SystemItem::Map { span, .. } => return span.start as usize,
             SystemItem::State(decls) => decls.first().map(|decl| decl.name.span),
@@ -79,7 +80,8 @@ impl Printer<'_> {
 
     fn system_item(&mut self, item: &SystemItem) {
         let end = match item {
-            SystemItem::On(clause) => return self.clause(clause),
+            SystemItem::On(clause) => return self.clause("on ", clause),
+            SystemItem::Also(clause) => return self.clause("also on ", clause),
             SystemItem::State(decls) => self.state(decls),
             SystemItem::Action(names) => self.named("action ", names),
             SystemItem::Moves(names) => self.named("moves ", names),
@@ -140,8 +142,8 @@ impl Printer<'_> {
     }
 
     /// `on A | B when GUARD { UPDATES }`; on one line if it was and fits.
-    fn clause(&mut self, clause: &Clause) {
-        self.layout.text("on ");
+    fn clause(&mut self, word: &'static str, clause: &Clause) {
+        self.layout.text(word);
         match &clause.actions {
             None => self.layout.text("*"),
             Some(actions) => self.names(actions, " |"),

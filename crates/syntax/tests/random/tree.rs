@@ -123,7 +123,7 @@ fn system(random: &mut Random) -> System {
 }
 
 fn system_item(random: &mut Random) -> SystemItem {
-    match random.below(16) {
+    match random.below(17) {
         0 => SystemItem::State((0..1 + random.below(3)).map(|_| state(random)).collect()),
         1 => SystemItem::Action(idents(random, 1)),
         2 => SystemItem::On(clause(random)),
@@ -135,6 +135,7 @@ fn system_item(random: &mut Random) -> SystemItem {
         8 => SystemItem::Obstacle(ident(random)),
         9 => SystemItem::Edge(ident(random)),
         10..=14 => SystemItem::Map { item: Box::new(map_item(random)), span: NOWHERE },
+        15 => SystemItem::Also(clause(random)),
         _ => SystemItem::Legend {
             letter: Text {
                 text: random.one(&["W", "é", " ", "\"", "#", "#0000ff", "#00Ff0080"]).to_owned(),

@@ -32,6 +32,7 @@ pub(crate) fn system(n: i64, actions: u32, edges: &[(i64, u32, i64)], init: &[i6
         vars: vec![Var { name: "s".into(), ty: Type::Range { lo: 0, hi: n - 1 }, span: span() }].into(),
         actions: (0..actions).map(ActionId).collect(),
         clauses: clauses.collect(),
+        also: Vec::new(),
         edges: None,
         init: Expr::Or(init.iter().map(|&i| is(Leaf::Var(S), i)).collect()),
         labels: vec![Label { name: "zero".into(), expr: is(Leaf::Var(S), 0), nested: false, span: span() }]

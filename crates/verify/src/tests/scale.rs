@@ -37,6 +37,7 @@ fn grid(n: i64) -> System {
         vars: vec![var("x"), var("y")].into(),
         actions: (0..4).map(ActionId).collect(),
         clauses: vec![clause(0, X, 1), clause(1, X, -1), clause(2, Y, 1), clause(3, Y, -1)],
+        also: Vec::new(),
         edges: None,
         init: Expr::TRUE,
         labels: vec![label("start", corner(0)), label("goal", corner(n - 1))].into(),

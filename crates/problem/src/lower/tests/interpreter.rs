@@ -1,6 +1,6 @@
 //! The meaning of a system, as plainly as it can be said.
 
-use crate::{ActionId, Expr, Leaf, System, Type, Update, Value};
+use crate::{ActionId, Expr, Leaf, StepLeaf, System, Type, Update, Value, VarId};
 use std::collections::BTreeSet;
 
 pub(super) fn eval(system: &System, e: &Expr<Leaf>, state: &[Value]) -> Value {
@@ -28,41 +28,76 @@ pub(super) fn successors(system: &System, state: &[Value], action: ActionId) -> 
         if !holds(system, &clause.guard, state) {
             continue;
         }
-        let mut next = vec![state.to_vec()];
-        for (var, update) in &clause.updates {
-            let values: Vec<Value> = match update {
-                Update::Assign(e) => vec![eval(system, e, state)],
-                Update::OneOf(es) => es.iter().map(|e| eval(system, e, state)).collect(),
-                Update::Within(lo, hi) => match (eval(system, lo, state), eval(system, hi, state)) {
-                    (Value::Int(lo), Value::Int(hi)) => (lo..=hi).map(Value::Int).collect(),
-                    other => panic!("no integers: {other:?}"),
-                },
-            };
-            let fitting: Vec<Value> =
-                values.into_iter().filter(|v| system.vars[*var].ty.contains(*v)).collect();
-            next = next
-                .into_iter()
-                .flat_map(|s| {
-                    fitting.iter().map(move |v| {
-                        let mut s = s.clone();
-                        s[usize::from(*var)] = *v;
-                        s
-                    })
-                })
-                .collect();
-        }
-        all.extend(next);
+        all.extend(outcomes(system, state, state.to_vec(), &clause.updates, action, None));
     }
     if let Some(edges) = &system.edges
         && let Value::Enum(from) = state[usize::from(edges.var)]
     {
-        for (_, edge) in edges.iter().filter(|(source, edge)| *source == from && edge.action == action) {
+        let all_edges = edges.iter().enumerate();
+        for (at, (_, edge)) in
+            all_edges.filter(|(_, (source, edge))| *source == from && edge.action == action)
+        {
             let mut next = state.to_vec();
             next[usize::from(edges.var)] = Value::Enum(edge.to);
-            all.insert(next);
+            all.extend(outcomes(system, state, next, &[], action, Some(at)));
         }
     }
     all
+}
+
+/// What updates make of a state, and clauses that add to the action.
+fn outcomes(
+    system: &System,
+    state: &[Value],
+    start: Vec<Value>,
+    updates: &[(VarId, Update)],
+    action: ActionId,
+    edge: Option<usize>,
+) -> Vec<Vec<Value>> {
+    let step = |e: &Expr<StepLeaf>| {
+        let value = e.evaluate(&mut |leaf| match leaf {
+            StepLeaf::State(leaf) => Some(eval(system, &Expr::Leaf(*leaf), state)),
+            StepLeaf::Took(taken) => Some(Value::Bool(*taken == action)),
+            StepLeaf::Attribute(attribute) => {
+                let number = |at| system.edges.as_ref().map(|edges| edges.number(at, *attribute));
+                Some(Value::Int(edge.and_then(number).unwrap_or(0)))
+            }
+        });
+        value.expect("numbers are small")
+    };
+    let mut next = vec![start];
+    for (var, update) in updates {
+        next = extended(system, next, *var, values(update, &|e| eval(system, e, state)));
+    }
+    for also in &system.also {
+        if also.actions.contains(&action) && holds(system, &also.guard, state) {
+            for (var, update) in &also.updates {
+                next = extended(system, next, *var, values(update, &step));
+            }
+        }
+    }
+    next
+}
+
+fn values<L>(update: &Update<L>, eval: &dyn Fn(&Expr<L>) -> Value) -> Vec<Value> {
+    match update {
+        Update::Assign(e) => vec![eval(e)],
+        Update::OneOf(es) => es.iter().map(eval).collect(),
+        Update::Within(lo, hi) => match (eval(lo), eval(hi)) {
+            (Value::Int(lo), Value::Int(hi)) => (lo..=hi).map(Value::Int).collect(),
+            other => panic!("no integers: {other:?}"),
+        },
+    }
+}
+
+fn extended(system: &System, states: Vec<Vec<Value>>, var: VarId, values: Vec<Value>) -> Vec<Vec<Value>> {
+    let fitting: Vec<Value> = values.into_iter().filter(|v| system.vars[var].ty.contains(*v)).collect();
+    let with = |state: &Vec<Value>, value: Value| {
+        let mut state = state.clone();
+        state[usize::from(var)] = value;
+        state
+    };
+    states.iter().flat_map(|state| fitting.iter().map(|&value| with(state, value))).collect()
 }
 
 /// All assignments of values to variables.
