@@ -154,6 +154,12 @@ impl<'a> Brute<'a> {
         }
     }
 
+    /// What a path costs in its first steps.
+    #[must_use]
+    pub fn cost(&self, path: &Path, steps: usize) -> usize {
+        self.problem.system.cost_of(&path.states, &path.actions, steps)
+    }
+
     pub(crate) fn atom(&self, atom: &Atom, paths: &[&Path], t: usize) -> bool {
         let system = &self.problem.system;
         let state = |p: &usize| paths[*p].states[t];
@@ -179,6 +185,8 @@ impl<'a> Brute<'a> {
                 system.labels[*label].contains(&state(p))
             }
             Atom::Coded(p, v, a) => value(p, v) == usize::from(taken(p) == Some(*a)),
+            Atom::Costs(p, most) => self.cost(paths[*p], t) <= *most,
+            Atom::Cheaper(p, less, q) => self.cost(paths[*p], t) + less < self.cost(paths[*q], t),
             Atom::Enabled(p, a) => self.edges.iter().any(|e| e.0 == state(p) && e.1 == *a),
         }
     }

@@ -61,6 +61,7 @@ fn system(random: &mut Random) -> System {
         actions,
         rules,
         also: Vec::new(),
+        costs: Vec::new(),
         init: Some(starts),
         labels: vec![vec![HOME], vec![goal]],
         absorb,

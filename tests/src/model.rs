@@ -75,6 +75,8 @@ pub struct System {
     pub rules: Vec<Rule>,
     /// What transitions do besides.
     pub also: Vec<Also>,
+    /// What a step costs that is no loop of an absorbing state, by state and action; none where it is empty.
+    pub costs: Vec<Vec<usize>>,
     /// Initial states, if restricted.
     pub init: Option<Vec<usize>>,
     /// Labels `l0`, `l1`, ... by their states.
@@ -119,6 +121,10 @@ pub enum Atom {
     Choice(usize, usize, usize, usize),
     /// `x[p] == (if action[p] == a then 1 else 0)`, of a range.
     Coded(usize, usize, usize),
+    /// `cost c[p] <= k`
+    Costs(usize, usize),
+    /// `cost c[p] + k < cost c[q]`
+    Cheaper(usize, usize, usize),
 }
 
 impl Atom {
@@ -296,6 +302,25 @@ impl System {
         all
     }
 
+    /// The costs as they are written: a sum of which one part counts for a step.
+    fn cost(&self) -> String {
+        let mut parts = Vec::new();
+        for (state, costs) in self.costs.iter().enumerate() {
+            for (action, &cost) in costs.iter().enumerate().filter(|(_, cost)| **cost > 0) {
+                let (there, name) = (self.is_state(state), self.actions[action]);
+                parts.push(format!("(if action == {name} & {there} then {cost} else 0)"));
+            }
+        }
+        if parts.is_empty() { "0".into() } else { parts.join(" + ") }
+    }
+
+    /// What a path costs in its first steps.
+    #[must_use]
+    pub fn cost_of(&self, states: &[usize], actions: &[usize], steps: usize) -> usize {
+        let counts = |step: &usize| !self.absorb.contains(&states[*step]);
+        (0..steps).filter(counts).map(|step| self.costs[states[step]][actions[step]]).sum()
+    }
+
     fn named(&self, actions: &[usize]) -> String {
         let names: Vec<&str> = actions.iter().map(|&a| self.actions[a]).collect();
         if names.len() == self.actions.len() { "*".into() } else { names.join(" | ") }
@@ -365,6 +390,9 @@ impl Display for System {
                 _ => format!("in {{{}}}", values.join(", ")),
             };
             writeln!(f, "  also on {actions}{guard} {{ {name}' {value}; }}")?;
+        }
+        if !self.costs.is_empty() {
+            writeln!(f, "  cost c = {};", self.cost())?;
         }
         if let Some(init) = &self.init {
             writeln!(f, "  init {};", self.is_one_of(init))?;
@@ -475,6 +503,8 @@ impl Atom {
                 let (one, zero) = (kind.value(1), kind.value(0));
                 format!("{name}[{p}] == (if action[{p}] == {action} then {one} else {zero})")
             }
+            Atom::Costs(i, most) => format!("cost c[{}] <= {most}", p(i)),
+            Atom::Cheaper(i, less, j) => format!("cost c[{}] + {less} < cost c[{}]", p(i), p(j)),
         }
     }
 }

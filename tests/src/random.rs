@@ -83,6 +83,45 @@ pub fn problem_with_semantics(random: &mut Random, semantics: Semantics) -> Prob
     }
 }
 
+/// A problem in which steps cost something; if `read`, the formula reads what paths have cost.
+#[must_use]
+pub fn problem_with_costs(random: &mut Random, read: bool) -> Problem {
+    loop {
+        let mut candidate = decidable(random, attempt);
+        if candidate.semantics.is_some() {
+            continue;
+        }
+        let (states, actions) = (candidate.system.states(), candidate.system.actions.len());
+        let cost = |random: &mut Random| [0, 1, 1, 2, 5][random.below(5)];
+        candidate.system.costs = (0..states).map(|_| (0..actions).map(|_| cost(random)).collect()).collect();
+        if read {
+            let part = priced(random, &candidate);
+            let formula = Box::new(candidate.formula.clone());
+            candidate.formula = match random.below(4) {
+                0 => Formula::And(vec![*formula, part]),
+                1 => Formula::Or(vec![*formula, part]),
+                2 => Formula::Implies(Box::new(part), formula),
+                _ => Formula::Iff(formula, Box::new(part)),
+            };
+        }
+        return candidate;
+    }
+}
+
+/// A formula about what paths have cost.
+fn priced(random: &mut Random, problem: &Problem) -> Formula {
+    let paths = problem.exists.len();
+    let (p, q) = (random.below(paths), random.below(paths));
+    let atom = match random.below(3) {
+        0 if p != q => Atom::Cheaper(p, random.below(2), q),
+        _ => Atom::Costs(p, random.below(6)),
+    };
+    let hi = problem.within.unwrap_or(problem.look);
+    let interval = Some((random.bound(hi + 1), hi));
+    let atom = Box::new(Formula::Atom(atom));
+    if random.flip() { Formula::Finally(interval, atom) } else { Formula::Globally(interval, atom) }
+}
+
 /// A problem whose numbers are of types without bounds, though its paths meet finitely many states. Without `within` a
 /// path has as many steps there as the formula reads; where no state is a dead end, that makes no difference.
 #[must_use]
@@ -196,6 +235,7 @@ fn system(random: &mut Random) -> System {
         actions,
         rules: Vec::new(),
         also: Vec::new(),
+        costs: Vec::new(),
         init: None,
         labels: Vec::new(),
         absorb: Vec::new(),

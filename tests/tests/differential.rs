@@ -20,6 +20,8 @@ use std::time::Instant;
 
 #[path = "differential/beliefs.rs"]
 mod beliefs;
+#[path = "differential/costs.rs"]
+mod costs;
 #[path = "differential/minimize.rs"]
 mod minimize;
 #[path = "differential/quick.rs"]

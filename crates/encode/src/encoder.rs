@@ -4,8 +4,8 @@ use crate::enumerated::Enumerated;
 use crate::variables::{ByVariable, Numbers};
 use crate::writing::Writer;
 use hyperplan_problem::answer::States;
-use hyperplan_problem::{Objective, PathId, Problem};
-use hyperplan_relevance::{Arena, Error, Limits, Stop, Task};
+use hyperplan_problem::{Objective, PathId, Problem, Target};
+use hyperplan_relevance::{Arena, Ceiling, Error, Limits, Stop, Task};
 use hyperplan_space::{Graph, Graphs};
 use std::sync::Arc;
 use typed_index_collections::TiVec;
@@ -54,6 +54,25 @@ impl<'a> Encoder<'a> {
         stop: Stop<'a>,
         graphs: &Graphs,
     ) -> Result<Self, Error> {
+        Encoder::below(problem, objective, wish, limits, stop, graphs, &[])
+    }
+
+    /// As [`Encoder::sharing`], of choices of the leading block under which targets are at most so large. Queries of the
+    /// leading block have to ask for that by [`Writing::afford`].
+    ///
+    /// # Errors
+    /// Those of [`Encoder::new`], and [`Error::NotEnumerable`] where states are not written one by one.
+    ///
+    /// [`Writing::afford`]: crate::Writing::afford
+    pub fn below(
+        problem: &'a Problem,
+        objective: &'a Objective,
+        wish: Option<States>,
+        limits: Limits,
+        stop: Stop<'a>,
+        graphs: &Graphs,
+        bounds: &[(Target, i64)],
+    ) -> Result<Self, Error> {
         let task = Task::new(problem, objective, limits, stop)?;
         let graphs = explore(&task, wish, graphs)?;
         let finite = objective.paths.iter().all(|path| problem.systems[path.system].is_finite());
@@ -67,11 +86,18 @@ impl<'a> Encoder<'a> {
             Ok(Box::new(ByVariable::new(task.clone(), graphs.clone(), numbers)?))
         };
         let writer = match (states, all) {
+            _ if !bounds.is_empty() && !states.is_enumerated() => {
+                return Err(Error::NotEnumerable { system: task.system(PathId::from(0)).name.clone() });
+            }
             (States::Bitvec, _) => by_variable(Numbers::Bits)?,
             (States::Int, _) => by_variable(Numbers::Integers)?,
             (States::Real, _) => by_variable(Numbers::Reals)?,
             (States::Onehot | States::Enum, Some(graphs)) => {
-                let arena = Arena { task: task.clone(), graphs };
+                let ceiling = |(target, most): &(Target, i64)| {
+                    Ceiling::new(|path| task.system(path), &graphs, target, *most)
+                };
+                let ceilings = bounds.iter().map(ceiling).collect();
+                let arena = Arena { task: task.clone(), graphs, ceilings };
                 Box::new(Enumerated::new(arena, states == States::Enum))
             }
             (States::Onehot | States::Enum, None) => {

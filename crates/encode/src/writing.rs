@@ -59,6 +59,15 @@ pub trait Writer: Send + Sync {
         Ok(Belief::Unfit)
     }
 
+    /// A value that the last of the targets with a bound is not below, whatever the choice of the leading block for its player
+    /// to reach the goal; `None` where it is not known how to tell.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`], and [`Error::TooLarge`] where too much can matter.
+    fn least(&self, _: &Goal) -> Result<Option<i64>, Error> {
+        Ok(None)
+    }
+
     /// The paths of a query in which some are known, with what was found out about those of the leading block.
     fn begin<'e>(
         &'e self,
@@ -105,6 +114,12 @@ pub trait Writer: Send + Sync {
 pub trait Writing: Send {
     /// A path that the solver chooses to reach a goal.
     fn declare(&mut self, script: &mut Script, path: PathId, goal: &Goal) -> Result<PathIx, Error>;
+
+    /// Demands that the declared paths of the leading block cost no more than the encoder's targets may; by default, there are
+    /// none.
+    fn afford(&mut self, _: &mut Script, _: &Env) -> Result<(), Error> {
+        Ok(())
+    }
 
     /// A path under a quantifier.
     fn bind(&mut self, terms: &mut Terms, path: PathId, goal: &Goal) -> Result<Bound, Error>;

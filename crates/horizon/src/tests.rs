@@ -22,7 +22,7 @@ fn objective(mode: Mode, build: impl FnOnce(&mut Formula)) -> Objective {
         |name: &str, quantifier| PathVar { name: name.into(), quantifier, system: SystemId(0), span: SPAN };
     let paths = [path("p", Quantifier::Exists), path("q", Quantifier::Forall)];
     let paths = paths.into_iter().collect();
-    Objective { name: "o".into(), paths, mode, semantics: None, formula, span: SPAN }
+    Objective { name: "o".into(), paths, mode, semantics: None, formula, minimize: Vec::new(), span: SPAN }
 }
 
 fn steps(objective: &Objective) -> Vec<(Option<u64>, Option<u64>)> {

@@ -187,9 +187,10 @@ pub(crate) struct Solve {
     #[arg(long, value_name = "MIB")]
     pub(crate) memory: Option<u64>,
     /// Finds the least value of a constant, such as T, for which the objective is realizable, and proves that
-    /// smaller ones are not; the range is 0 (or the least value that the file allows) up to the constant's value
-    #[arg(long, value_name = "CONST[=LO..HI]", value_parser = minimize)]
-    pub(crate) minimize: Option<Minimize>,
+    /// smaller ones are not; the range is 0 (or the least value that the file allows) up to the constant's value.
+    /// Or finds the cheapest strategy: 'cost fuel[p]', in place of what the objective says after `minimize`
+    #[arg(long, value_name = "CONST[=LO..HI]|EXPR", value_parser = wish)]
+    pub(crate) minimize: Option<Wish>,
     /// Draws the map with the paths into an .svg (or .txt) file
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
@@ -209,6 +210,15 @@ pub(crate) struct Solve {
     /// Seed of the solver; the same seed gives the same answer where no limit is reached
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) seed: u64,
+}
+
+/// What is to be as small as possible.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Wish {
+    /// A constant.
+    Constant(Minimize),
+    /// Sums of costs, as they are written in problem files.
+    Costs(String),
 }
 
 /// A constant, and the range of its values where that was given; never empty.
@@ -586,6 +596,11 @@ fn range(text: &str) -> Result<(String, i64, i64), String> {
         Minimize { constant, range: Some((lo, hi)) } => Ok((constant, lo, hi)),
         Minimize { constant, range: None } => Err(format!("expected a range, such as {constant}=4..20")),
     }
+}
+
+fn wish(text: &str) -> Result<Wish, String> {
+    // Costs are read of paths, and neither constants nor ranges have brackets.
+    if text.contains('[') { Ok(Wish::Costs(text.to_owned())) } else { minimize(text).map(Wish::Constant) }
 }
 
 fn minimize(text: &str) -> Result<Minimize, String> {

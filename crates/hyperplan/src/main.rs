@@ -18,6 +18,7 @@ mod report;
 mod signals;
 mod store;
 mod trusted;
+mod wish;
 
 use clap::Parser as _;
 use failure::{Exit, Result};

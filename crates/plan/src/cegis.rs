@@ -187,6 +187,9 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
             env[usize::from(path)] = Some(query.paths.declare(&mut query.script, path, goal)?);
             recipes[usize::from(path)] = Some(Recipe::Declared);
         }
+        if level == 0 {
+            query.paths.afford(&mut query.script, &env)?;
+        }
         let formula = &encoder.objective.formula;
         let (own, rest) = goal.split(formula, &|path| env[usize::from(path)].is_some());
         query.demand(&env, &own);

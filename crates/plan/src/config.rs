@@ -3,7 +3,7 @@
 use crate::fact::{Because, Note, Reason};
 use hyperplan_encode::Limits;
 pub use hyperplan_problem::answer::{Quantifiers, States, Verdict, Verified};
-use hyperplan_problem::{PathId, Strategy};
+use hyperplan_problem::{PathId, Strategy, Target};
 use hyperplan_solver::{Deadline, Identity, QuerySize, Spec};
 use std::path::PathBuf;
 use typed_index_collections::TiVec;
@@ -33,6 +33,8 @@ pub struct Config {
     pub queries: Option<PathBuf>,
     /// Budgets of the encoding.
     pub limits: Limits,
+    /// What targets over costs of the leading block may come to; for systems whose states are written one by one.
+    pub bounds: Vec<(Target, i64)>,
 }
 
 impl Config {
@@ -51,6 +53,7 @@ impl Config {
             memory_mib: None,
             queries: None,
             limits: Limits::default(),
+            bounds: Vec::new(),
         }
     }
 }

@@ -281,6 +281,11 @@ impl<'s, 'a> Search<'s, 'a> {
     fn narrowings(&self) -> Vec<Narrowing> {
         let auto = self.config.quantifiers == Quantifiers::Auto;
         let alone = self.blocks.len() == 1;
+        if !self.config.bounds.is_empty() {
+            // Costs say which runs are long.
+            let one_run = (auto && alone).then_some(Narrowing { slack: None, one_run: true });
+            return one_run.into_iter().chain([Narrowing::default()]).collect();
+        }
         let guess = auto && !alone && !self.encoder.objective.has_ties();
         let guess = guess.then_some(Narrowing { slack: SLACKS[0], one_run: true });
         let steps = SLACKS.map(|slack| Narrowing { slack, one_run: auto && alone && slack.is_some() });

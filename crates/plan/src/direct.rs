@@ -158,6 +158,7 @@ pub(crate) fn leading<'e, 'a>(
     for &path in &blocks[0] {
         env[usize::from(path)] = Some(query.paths.declare(&mut query.script, path, goal)?);
     }
+    query.paths.afford(&mut query.script, &env)?;
     Ok(Direct { query, env, exact })
 }
 

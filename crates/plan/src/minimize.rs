@@ -134,15 +134,15 @@ struct Solved {
 
 /// Where to look next: at growing distances while the answer is no, then in the middle of what is left.
 #[derive(Default)]
-struct Steps {
-    distance: i64,
+pub(crate) struct Steps {
+    pub(crate) distance: i64,
     /// The least value known to be otherwise.
-    bound: Option<i64>,
+    pub(crate) bound: Option<i64>,
 }
 
 impl Steps {
     /// A value from `low` up, where smaller ones are settled; `None` where the bound is reached.
-    fn next(&self, low: i64, high: i64) -> Option<i64> {
+    pub(crate) fn next(&self, low: i64, high: i64) -> Option<i64> {
         match self.bound {
             Some(bound) if bound <= low => None,
             Some(bound) => Some(low + (bound - low) / 2),
@@ -150,7 +150,7 @@ impl Steps {
         }
     }
 
-    fn grow(&mut self) {
+    pub(crate) fn grow(&mut self) {
         self.distance = self.distance.saturating_mul(2).saturating_add(1);
     }
 }

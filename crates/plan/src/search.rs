@@ -21,7 +21,9 @@ pub(crate) fn search(
     graphs: &Graphs,
 ) -> Result<Outcome, Error> {
     match attempt(problem, objective, config, graphs) {
-        Err(Error::Encode(error @ encode::Error::TooLarge { .. })) if config.states.is_none() => {
+        Err(Error::Encode(error @ encode::Error::TooLarge { .. }))
+            if config.states.is_none() && config.bounds.is_empty() =>
+        {
             let symbolic = Config { states: Some(States::Bitvec), ..config.clone() };
             let mut outcome = attempt(problem, objective, &symbolic, graphs)?;
             outcome.notes.push(Note::Symbolic(error));
@@ -40,7 +42,7 @@ fn attempt(
     let start = Instant::now();
     let stop = || config.deadline.passed();
     let (wish, limits) = (config.states, config.limits);
-    let encoder = Encoder::sharing(problem, objective, wish, limits, &stop, graphs)?;
+    let encoder = Encoder::below(problem, objective, wish, limits, &stop, graphs, &config.bounds)?;
     if encoder.states.is_arithmetic() && config.solver.is_embedded() {
         return Err(needs_arithmetic(&encoder));
     }

@@ -2,10 +2,11 @@
 
 use crate::expr::{Comparison, Expr, Leaf, PathLeaf, Rational, State, Type, Value};
 use crate::formula::{Formula, Interval, Node};
-use crate::ids::{FormulaId, PathId};
+use crate::ids::{CostId, FormulaId, PathId};
 use crate::objective::{Objective, Quantifier};
 use crate::problem::Problem;
 use crate::system::System;
+use crate::target::Target;
 use hyperplan_syntax::ast::{BinaryOp, UnaryOp};
 use hyperplan_syntax::is_name;
 use hyperplan_syntax::operator::{Fixity, Operator, level};
@@ -84,12 +85,29 @@ pub fn name(name: &str) -> Cow<'_, str> {
     Cow::Owned(format!("\"{}\"", name.replace('\\', "\\\\").replace('"', "\\\"")))
 }
 
+/// A sum of costs: `2 * cost fuel[p] + cost time[q]`.
+#[must_use]
+pub fn target(problem: &Problem, objective: &Objective, target: &Target) -> String {
+    let term = |&(factor, path, cost): &(i64, PathId, CostId)| {
+        let var = &objective.paths[path];
+        let own = format!("cost {}[{}]", problem.systems[var.system].costs[cost].name, var.name);
+        if factor == 1 { own } else { format!("{factor} * {own}") }
+    };
+    let mut text = target.terms.iter().map(term).collect::<Vec<_>>().join(" + ");
+    match target.constant {
+        0 => {}
+        constant => text += &format!(" {} {}", if constant < 0 { "-" } else { "+" }, constant.unsigned_abs()),
+    }
+    text
+}
+
 /// A state: `(x = 1, y = 2)`; a crash is shown only where it happened.
 #[must_use]
 pub fn state(system: &System, state: &State) -> String {
     let crash = system.map.as_ref().and_then(|map| map.crash);
     let shown = system.vars.iter_enumerated().zip(state.iter());
-    let shown = shown.filter(|((id, _), v)| Some(*id) != crash || **v == Value::Bool(true));
+    let shown =
+        shown.filter(|((id, var), v)| var.sums.is_none() && (Some(*id) != crash || **v == Value::Bool(true)));
     let parts: Vec<String> =
         shown.map(|((_, var), v)| format!("{} = {}", var.name, value(&var.ty, *v))).collect();
     format!("({})", parts.join(", "))

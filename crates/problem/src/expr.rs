@@ -360,6 +360,18 @@ impl<L> Expr<L> {
     }
 }
 
+impl Expr<StepLeaf> {
+    /// What the expression says of steps with that action and these numbers, of the state before.
+    #[must_use]
+    pub fn of_state(&self, action: ActionId, number: &dyn Fn(AttributeId) -> Expr<Leaf>) -> Expr<Leaf> {
+        self.substitute(&mut |leaf| match *leaf {
+            StepLeaf::State(leaf) => Expr::Leaf(leaf),
+            StepLeaf::Took(taken) => Expr::Const(Value::Bool(taken == action)),
+            StepLeaf::Attribute(attribute) => number(attribute),
+        })
+    }
+}
+
 /// A disjunction (`winner` true) or conjunction (`winner` false) of which some parts may have no value.
 fn junction<L>(es: &[Expr<L>], winner: bool, leaf: &mut impl FnMut(&L) -> Option<Value>) -> Option<bool> {
     let mut unknown = false;

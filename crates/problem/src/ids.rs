@@ -27,6 +27,8 @@ ids! {
     VarId;
     /// A label of one system.
     LabelId;
+    /// A cost of one system.
+    CostId;
     /// A number that the transitions of one graph carry.
     AttributeId;
     /// An action name; the same name in two systems is the same action.

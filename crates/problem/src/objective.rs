@@ -4,6 +4,7 @@ use crate::expr::PathLeaf;
 use crate::formula::{Formula, Node};
 use crate::ids::{PathId, SystemId};
 use crate::names::names;
+use crate::target::Target;
 use hyperplan_syntax::Span;
 use typed_index_collections::TiVec;
 
@@ -77,6 +78,8 @@ pub struct Objective {
     pub semantics: Option<Semantics>,
     /// The quantifier-free rest, to be read as the mode says: it was translated where there are other semantics.
     pub formula: Formula,
+    /// What is to be as small as possible, what counts most first.
+    pub minimize: Vec<Target>,
     /// Its declaration.
     pub span: Span,
 }

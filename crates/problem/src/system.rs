@@ -2,8 +2,9 @@
 
 use crate::edges::Edges;
 use crate::expr::{Expr, Leaf, State, StepLeaf, Type, Value};
-use crate::ids::{ActionId, LabelId, VarId};
+use crate::ids::{ActionId, AttributeId, CostId, LabelId, SystemId, VarId};
 use crate::place::Place;
+use crate::strategy::Trace;
 use hyperplan_syntax::Span;
 use std::sync::Arc;
 use typed_index_collections::TiVec;
@@ -36,6 +37,10 @@ pub struct System {
     pub edges: Option<Edges>,
     /// Initial states.
     pub init: Expr<Leaf>,
+    /// What steps cost.
+    pub costs: TiVec<CostId, Cost>,
+    /// The system of the file, where this is that system with costs added up.
+    pub base: Option<SystemId>,
     /// Labels; a label's expression reads only labels before it.
     pub labels: TiVec<LabelId, Label>,
     /// Where every action changes nothing.
@@ -57,6 +62,21 @@ pub struct Var {
     pub name: String,
     /// Its type.
     pub ty: Type,
+    /// The cost that it adds up, where the file does not declare it.
+    pub sums: Option<CostId>,
+    /// Its declaration.
+    pub span: Span,
+}
+
+/// `cost NAME = EXPR;`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cost {
+    /// Its name.
+    pub name: String,
+    /// What a step costs that does not start where [`System::absorb`] holds; those cost nothing. Never negative.
+    pub expr: Expr<StepLeaf>,
+    /// No step costs more.
+    pub most: i64,
     /// Its declaration.
     pub span: Span,
 }
@@ -266,6 +286,47 @@ impl System {
     /// What transitions with that action do besides, where guards say so.
     pub fn also_on(&self, action: ActionId) -> impl Iterator<Item = &Also> {
         self.also.iter().filter(move |also| also.actions.binary_search(&action).is_ok())
+    }
+
+    /// Gives the variables of a trace's states that add up costs the values that follow from its steps; a trace with
+    /// something that is no step keeps what it has from there on.
+    pub fn add_up(&self, trace: &mut Trace) {
+        let sums = || self.vars.iter_enumerated().filter(|(_, var)| var.sums.is_some()).map(|(id, _)| id);
+        for step in 0..trace.actions.len() {
+            let (Some(from), Some(to)) = (trace.states.get(step), trace.states.get(step + 1)) else { return };
+            let (from, mut to) = (from.clone(), to.clone());
+            for var in sums() {
+                let Some(value) = self.summed(var, &from, trace.actions[step], &to) else { return };
+                to[usize::from(var)] = value;
+            }
+            trace.states[step + 1] = to;
+        }
+    }
+
+    /// What a variable that adds up a cost is after a step.
+    fn summed(&self, var: VarId, from: &State, action: ActionId, to: &State) -> Option<Value> {
+        let read = |var: VarId| from.get(usize::from(var)).copied();
+        if self.evaluate(&self.absorb, &read)? == Value::Bool(true) {
+            return read(var);
+        }
+        let number = |attribute| Expr::Const(Value::Int(self.number(from, action, to, attribute)));
+        let updates = self.also.iter().flat_map(|also| &also.updates);
+        let (_, update) = updates.into_iter().find(|(updated, _)| *updated == var)?;
+        let Update::Assign(next) = update else { return None };
+        self.evaluate(&next.of_state(action, &number), &read)
+    }
+
+    /// The number of the listed transition that makes a step; 0 where none does.
+    #[must_use]
+    pub fn number(&self, from: &[Value], action: ActionId, to: &[Value], attribute: AttributeId) -> i64 {
+        let Some(edges) = &self.edges else { return 0 };
+        let node = |state: &[Value]| match state.get(usize::from(edges.var)) {
+            Some(Value::Enum(node)) => *node,
+            _ => u32::MAX,
+        };
+        let mut own = edges.numbered(node(from));
+        let listed = own.find(|(_, edge)| edge.action == action && edge.to == node(to));
+        listed.map_or(0, |(at, _)| edges.number(at, attribute))
     }
 
     /// The value of an expression where the variables have these values; see [`Expr::evaluate`].

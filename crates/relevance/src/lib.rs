@@ -16,6 +16,7 @@
 
 mod belief;
 mod cases;
+mod ceiling;
 mod game;
 mod goal;
 mod instance;
@@ -30,11 +31,12 @@ mod tests;
 
 pub use belief::{Belief, believe};
 pub use cases::{Numbering, cases};
+pub use ceiling::{Ceiling, NO_WAY, rests, transitions};
 pub use game::{Game, LosingMove, MAX_RESIDUALS, Pair, Turn};
 pub use goal::Goal;
 pub use instance::{Instance, Known, Move, Start, generalize};
 pub use layers::Layers;
 pub use reads::{in_state, only_path};
-pub use relevant::{Narrowing, Relevance, Relevant, leading};
+pub use relevant::{Narrowing, Relevance, Relevant, leading, least};
 pub use residual::{FALSE, MAX_ATOMS, Now, Residual, Residuals, TRUE};
 pub use task::{Arena, Error, Limits, Stop, Task};

@@ -1,6 +1,7 @@
 //! What can matter of the paths of one query: of those of the leading block, found ahead and together, and of the
 //! others, found as they are asked for.
 
+use crate::ceiling::{self, NO_WAY};
 use crate::game::Game;
 use crate::goal::Goal;
 use crate::layers::Layers;
@@ -70,6 +71,24 @@ pub fn leading(
         search.declare(path, goal)?;
     }
     Ok(search.found)
+}
+
+/// A value that the sum of the last ceiling is not below, whatever the choice of the leading block for its player to reach the
+/// goal; [`NO_WAY`] where there is none.
+///
+/// # Errors
+/// [`Error::TooLarge`] where too much can matter.
+pub fn least(arena: &Arena<'_>, goal: &Goal) -> Result<i64, Error> {
+    let search = Relevance::new(arena, vec![None; arena.graphs.len()], Relevant::default());
+    let nothing = Goal::nothing();
+    let goal = if arena.task.limits.prune { goal } else { &nothing };
+    let mut sum: i64 = 0;
+    let Some(ceiling) = arena.ceilings.last() else { return Ok(0) };
+    for (path, _) in &ceiling.weights {
+        let own = reach::least_cost(&search.question([*path], goal, &search.fixed), ceiling)?;
+        sum = sum.saturating_add(own).min(NO_WAY);
+    }
+    Ok(sum)
 }
 
 /// What is known of the paths of one query, and what is found out about the others.
@@ -180,7 +199,8 @@ impl<'e, 'a> Relevance<'e, 'a> {
             [path] if one_run => {
                 let mut question = self.question([path], goal, &self.fixed);
                 question.one_run = true;
-                let found = reach::layers(&question)?;
+                question.ceiling = self.arena.ceilings.last();
+                let found = self.affordable(path, reach::layers(&question)?);
                 self.keep((path, goal.clone()), found);
             }
             [first, second] if task.objective.ties(first, second) => {
@@ -190,6 +210,7 @@ impl<'e, 'a> Relevance<'e, 'a> {
                 question.budget = task.limits.pairs;
                 let (_, rest) = goal.split(&task.objective.formula, &|path| block.contains(&path));
                 question.one_run = one_run && rest.is_empty();
+                question.ceiling = self.arena.ceilings.last();
                 // Too many pairs, and the two are explored one by one.
                 let Ok(found) = reach::pair_layers(&question) else { return task.go_on() };
                 let lossy = found.lossy || alone.iter().any(|alone| alone.lossy);
@@ -242,12 +263,26 @@ impl<'e, 'a> Relevance<'e, 'a> {
             slack: self.narrowing.slack,
             least: self.least,
             one_run: false,
+            ceiling: None,
             budget: self.arena.task.limits.layer_states,
         }
     }
 
     fn alone(&self, path: PathId, goal: &Goal, fixed: &[Option<Run>]) -> Result<Explored<1>, Error> {
-        reach::layers(&self.question([path], goal, fixed))
+        Ok(self.affordable(path, reach::layers(&self.question([path], goal, fixed))?))
+    }
+
+    /// What is left of the layers of a path under what it may cost.
+    fn affordable(&self, path: PathId, mut found: Explored<1>) -> Explored<1> {
+        for ceiling in &self.arena.ceilings {
+            if let Some(weights) = ceiling.of(path) {
+                let [layers] = found.layers;
+                let graph = &self.arena.graphs[path];
+                // Whatever others cost, it is not negative.
+                found.layers = [ceiling::lowered(graph, layers, weights, ceiling.most)];
+            }
+        }
+        found
     }
 
     /// Beside a path that has been declared and that the formula ties to this one. `None` where there is none, or too

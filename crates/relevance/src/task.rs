@@ -1,5 +1,6 @@
 //! What is to be decided: an objective, how far each of its paths is read, and the budgets.
 
+use crate::ceiling::Ceiling;
 use hyperplan_horizon::{Horizon, horizons};
 use hyperplan_problem::{Mode, Objective, PathId, Problem, System};
 use hyperplan_space::{Graph, LIVE, StateIx};
@@ -201,4 +202,6 @@ pub struct Arena<'a> {
     pub task: Task<'a>,
     /// The states of each path's system.
     pub graphs: TiVec<PathId, Arc<Graph>>,
+    /// What the paths of the leading block may cost.
+    pub ceilings: Vec<Ceiling>,
 }

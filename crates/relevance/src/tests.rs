@@ -20,7 +20,7 @@ pub(crate) fn arena(problem: &Problem) -> Arena<'_> {
     let task = Task::new(problem, objective, Limits::default(), &|| false).expect("it is short");
     let graph = |path: PathId| Arc::new(Graph::explore(task.system(path), 1000).expect("it is small"));
     let graphs = objective.paths.keys().map(graph).collect();
-    Arena { task, graphs }
+    Arena { task, graphs, ceilings: Vec::new() }
 }
 
 /// The question about a path of which nothing is known.
@@ -40,6 +40,7 @@ pub(crate) fn alone<'a>(
         slack: None,
         least: 0,
         one_run: false,
+        ceiling: None,
         budget: 10_000,
     }
 }

@@ -10,7 +10,9 @@ pub fn table(problem: &Problem, objective: &Objective, trace: &Trace) -> String 
     let Some(path) = objective.paths.get(trace.path) else { return String::new() };
     let system = &problem.systems[path.system];
     let mut rows = vec![vec!["time".to_owned(), "action".to_owned()]];
-    rows[0].extend(system.vars.iter().map(|v| v.name.clone()));
+    // Sums of costs stop where more of them makes no difference.
+    let declared = || system.vars.iter().filter(|var| var.sums.is_none());
+    rows[0].extend(declared().map(|v| v.name.clone()));
     let in_metres = system.map.as_ref().is_some_and(|map| map.place.is_some());
     if in_metres {
         rows[0].extend(["x in m", "y in m"].map(str::to_owned));
@@ -18,7 +20,7 @@ pub fn table(problem: &Problem, objective: &Objective, trace: &Trace) -> String 
     for (time, state) in trace.states.iter().enumerate() {
         let action = trace.actions.get(time).map_or("-", |a| problem.actions[*a].as_str());
         let mut row = vec![time.to_string(), one_line(action).into_owned()];
-        row.extend(system.vars.iter().zip(state.iter()).map(|(var, value)| in_words(&var.ty, *value)));
+        row.extend(declared().zip(state.iter()).map(|(var, value)| in_words(&var.ty, *value)));
         if let Some((x, y)) = system.position(state).filter(|_| in_metres) {
             row.extend([x.to_string(), y.to_string()]);
         }

@@ -1,24 +1,13 @@
 //! What transitions do besides, as updates of the clauses and edges that give them.
 
-use crate::command::MAX_COMMANDS;
 use crate::graph::TooLarge;
 use hyperplan_problem::{ActionId, Also, AttributeId, Expr, Leaf, StepLeaf, System, Update, Value, VarId};
 
+/// More commands than this are refused: each is a part of every step.
+pub const MAX_COMMANDS: usize = 4096;
+
 /// Updates of different variables.
 pub type Updates = Vec<(VarId, Update)>;
-
-/// What an expression over a step says of steps with that action and these numbers, of the state before.
-pub(crate) fn of_state(
-    expr: &Expr<StepLeaf>,
-    action: ActionId,
-    number: &dyn Fn(AttributeId) -> Expr<Leaf>,
-) -> Expr<Leaf> {
-    expr.substitute(&mut |leaf| match *leaf {
-        StepLeaf::State(leaf) => Expr::Leaf(leaf),
-        StepLeaf::Took(taken) => Expr::Const(Value::Bool(taken == action)),
-        StepLeaf::Attribute(attribute) => number(attribute),
-    })
-}
 
 /// The number that steps carry that follow no edge.
 pub fn no_number(_: AttributeId) -> Expr<Leaf> {
@@ -33,7 +22,7 @@ pub(crate) fn applicable<'s>(
 ) -> Vec<(&'s Also, Updates)> {
     let updates = |also: &Also| {
         let of = |(var, update): &(VarId, Update<StepLeaf>)| {
-            (*var, update.map(|expr| of_state(expr, action, number)))
+            (*var, update.map(|expr| expr.of_state(action, number)))
         };
         also.updates.iter().map(of).collect()
     };

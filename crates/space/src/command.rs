@@ -1,6 +1,6 @@
 //! A system as guarded commands: the ways to take a step, and what each asks and does, without a list of its states.
 
-use crate::also;
+use crate::also::{self, MAX_COMMANDS};
 use crate::eval::{bounds, code, decode, holds_in, value_in};
 use crate::graph::TooLarge;
 use hyperplan_problem::{
@@ -9,9 +9,6 @@ use hyperplan_problem::{
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// More commands than this are refused: each is a part of every step.
-pub const MAX_COMMANDS: usize = 4096;
 
 /// What becomes of a variable; expressions read the state before.
 #[derive(Clone, Debug)]

@@ -80,6 +80,12 @@ impl Graph {
         &self.transitions[self.starts[at] as usize..self.starts[at + 1] as usize]
     }
 
+    /// The position of a state's first transition among all.
+    #[must_use]
+    pub fn first_transition(&self, state: StateIx) -> usize {
+        self.starts[state as usize] as usize
+    }
+
     /// Where a letter leads.
     #[must_use]
     pub fn successor(&self, state: StateIx, letter: Letter) -> Option<StateIx> {

@@ -13,6 +13,7 @@
 
 mod also;
 mod command;
+mod cost;
 mod eval;
 mod explore;
 mod graph;
@@ -21,8 +22,9 @@ mod run;
 #[cfg(test)]
 mod tests;
 
-pub use also::{Updates, besides, no_number};
-pub use command::{Command, Commands, Guard, Listed, MAX_COMMANDS, NewValue};
+pub use also::{MAX_COMMANDS, Updates, besides, no_number};
+pub use command::{Command, Commands, Guard, Listed, NewValue};
+pub use cost::step_costs;
 pub use eval::{bounds, code, decode, eval, eval_in, holds_in, value_in};
 pub use explore::Graphs;
 pub use graph::{Graph, LIVE, Letter, StateIx, TooLarge};

@@ -102,6 +102,8 @@ pub enum SystemItem {
     Init(Expr),
     /// `label NAME = EXPR;`
     Label(Ident, Expr),
+    /// `cost NAME = EXPR;`
+    Cost(Ident, Expr),
     /// `observe EXPR, ...;`
     Observe(Vec<Expr>),
     /// `absorb EXPR;`
@@ -240,7 +242,7 @@ pub enum ObjectiveBody {
     },
 }
 
-/// `DEFINES QUANTIFIERS BODY`
+/// `DEFINES QUANTIFIERS BODY [minimize EXPR, ...;]`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Formula {
     /// Definitions.
@@ -249,6 +251,8 @@ pub struct Formula {
     pub quantifiers: Vec<Quantifier>,
     /// The quantifier-free rest.
     pub body: Expr,
+    /// What is to be as small as possible, what counts most first.
+    pub minimize: Vec<Expr>,
 }
 
 /// One quantified path variable.
@@ -285,6 +289,8 @@ pub enum ExprKind {
     /// `NAME[PATH]`: a label or variable of a path, `action[p]`, `state[p]`, `obs[p]`, `enabled[p]`.
     /// More than one path is kept for the message that refuses it.
     At(Ident, Vec<Ident>),
+    /// `cost NAME[PATH]`: what the steps of a path have cost.
+    Cost(Ident, Vec<Ident>),
     /// `NAME(ARGS)`: a use of a `define`.
     Call(Ident, Vec<Ident>),
     /// `!E`

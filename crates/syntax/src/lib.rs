@@ -15,7 +15,7 @@ mod token;
 
 pub use diagnostic::{Diagnostic, Severity};
 pub use lexer::is_name;
-pub use parser::{MAX_NESTING, parse, vocabulary};
+pub use parser::{MAX_NESTING, parse, parse_exprs, vocabulary};
 pub use print::print;
 pub use render::{JsonDiagnostic, JsonRelated, JsonSpan, render, to_json};
 pub use similar::similar;

@@ -301,6 +301,7 @@ impl Operator {
             | ExprKind::Name(_)
             | ExprKind::Text(_)
             | ExprKind::At(..)
+            | ExprKind::Cost(..)
             | ExprKind::Call(..)
             | ExprKind::Tuple(_)
             | ExprKind::If(..) => return None,

@@ -13,7 +13,7 @@ mod operand;
 mod recover;
 mod system;
 
-use crate::ast::{File, Ident, Text};
+use crate::ast::{Expr, File, Ident, Text};
 use crate::diagnostic::Diagnostic;
 use crate::lexer::{Lexemes, lex};
 use crate::similar::similar;
@@ -54,6 +54,17 @@ pub fn parse(source: SourceId, text: &str) -> (File, Vec<Diagnostic>) {
         errors.push(Diagnostic::error_nowhere("too-many-errors", "too many errors; the rest is not shown"));
     }
     (file, errors)
+}
+
+/// Parses expressions with commas between them, as they stand behind `minimize`; none where there is an error.
+pub fn parse_exprs(source: SourceId, text: &str) -> (Vec<Expr>, Vec<Diagnostic>) {
+    let Lexemes { tokens, errors, .. } = lex(source, text);
+    let mut parser = Parser { tokens, at: 0, text, errors, braces: 0, depth: 0, skipped: Vec::new() };
+    let all = parser.separated(Parser::expr).and_then(|all| match parser.peek() {
+        Tok::Eof => Ok(all),
+        _ => parser.fail("an operator, `,` or the end"),
+    });
+    (all.unwrap_or_default(), parser.errors)
 }
 
 /// The declaration at hand cannot be parsed; the reason has been reported.

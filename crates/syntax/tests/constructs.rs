@@ -59,6 +59,7 @@ fn describe(item: &SystemItem) -> String {
         SystemItem::Also(clause) => format!("also {}", describe_clause(clause)),
         SystemItem::Init(expr) => format!("init {}", show(expr)),
         SystemItem::Label(name, expr) => format!("label {} {}", name.name, show(expr)),
+        SystemItem::Cost(name, expr) => format!("cost {} {}", name.name, show(expr)),
         SystemItem::Observe(exprs) => {
             format!("observe {}", exprs.iter().map(show).collect::<Vec<_>>().join(","))
         }

@@ -234,6 +234,29 @@ impl<'p> Graph<'p> {
         Ok(found)
     }
 
+    /// What a step costs.
+    pub(crate) fn step_cost(
+        &self,
+        from: StateId,
+        action: ActionId,
+        to: StateId,
+        cost: &Expr<StepLeaf>,
+    ) -> Result<i64, Stop> {
+        if self.holds(from, &self.system.absorb)? {
+            return Ok(0);
+        }
+        let edges = self.system.edges.as_ref();
+        let edge = edges.and_then(|edges| {
+            let node = |state: StateId| position(&self.nodes[state].values, edges.var);
+            let mut own = edges.numbered(node(from));
+            own.find(|(_, edge)| edge.action == action && edge.to == node(to)).map(|(at, _)| at)
+        });
+        match self.step_value(from, Step { action, edge }, cost)? {
+            Value::Int(cost) if cost >= 0 => Ok(cost),
+            _ => Err(no_value(self.system).into()),
+        }
+    }
+
     /// The value of an expression over a step from a state.
     fn step_value(&self, from: StateId, step: Step, e: &Expr<StepLeaf>) -> Result<Value, Stop> {
         let edges = self.system.edges.as_ref().zip(step.edge);

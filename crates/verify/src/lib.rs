@@ -54,6 +54,7 @@ mod id;
 
 mod atoms;
 mod check;
+mod cost;
 mod domain;
 mod eval;
 mod follow;
@@ -80,6 +81,7 @@ mod valuation;
 mod value;
 
 pub use check::{check, decide};
+pub use cost::cost;
 pub use follow::{Open, complete};
 pub use outcomes::holds_for_all_outcomes;
 pub use report::{Budget, Check, Defeat, Error, Reached};

@@ -20,6 +20,11 @@ impl<'a> Scope<'a> {
         Scope { system, path }
     }
 
+    /// Whether steps cost something.
+    pub(super) fn costs(&self) -> bool {
+        self.system.costs
+    }
+
     /// A label or a variable.
     fn at(&self, name: &str) -> String {
         if self.path.is_empty() { name.to_owned() } else { format!("{name}[{}]", self.path) }

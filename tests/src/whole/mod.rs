@@ -70,10 +70,11 @@ impl Whole {
 
     fn objective(&mut self, random: &mut Random, systems: &[System], number: usize) {
         let within = random.once_in(3);
+        let mut semantics = "";
         self.text += &format!("objective o{number}");
         if within {
             self.text += random.one(&[" within 0", " within T", " within D", " within 4"]);
-            self.text += random.one(&[
+            semantics = random.one(&[
                 "",
                 "",
                 " semantics pes",
@@ -81,6 +82,7 @@ impl Whole {
                 " semantics hpes",
                 " semantics hopt",
             ]);
+            self.text += semantics;
         }
         if systems.len() == 1 && random.once_in(4) {
             self.text += &format!(" = {};\n", instance(random, &systems[0]));
@@ -98,12 +100,22 @@ impl Whole {
         let body = expression::formula(random, &scopes, depth, (!within).then_some(3));
         let mut inner = String::new();
         let mut body = body;
+        let priced: Vec<&str> = scopes.iter().filter(|scope| scope.costs()).map(|scope| scope.path).collect();
+        if let (Some(first), Some(last), "") = (priced.first(), priced.last(), semantics) {
+            body = match random.below(4) {
+                0 => format!("({body}) & F[0,2] cost c[{first}] <= 3"),
+                1 => format!("({body}) | !cost c[{first}] + 1 < 2 * cost c[{last}]"),
+                _ => body,
+            };
+        }
+        let leads = quantifiers.starts_with("exists p") && scopes[0].costs();
+        let wish = if leads && random.flip() { " minimize 2 * cost c[p] + T;" } else { "" };
         if random.once_in(3) {
             let own = expression::formula(random, &scopes[..1], 1, Some(1));
             inner = format!("define own({}) = {own};\n  ", scopes[0].path);
             body = format!("own({}) {} {body}", scopes[0].path, random.one(&["&", "|", "->"]));
         }
-        self.text += &format!(" {{\n  {inner}{quantifiers}\n  {body}\n}}\n");
+        self.text += &format!(" {{\n  {inner}{quantifiers}\n  {body}{wish}\n}}\n");
     }
 }
 
@@ -175,6 +187,9 @@ mod tests {
             "on *",
             "also on *",
             "length div",
+            "cost c =",
+            "cost c[",
+            "minimize",
             "init",
             "div",
         ];

@@ -33,6 +33,8 @@ pub(super) struct System {
     pub(super) actions: Vec<String>,
     /// Whether there is something that `obs` sees.
     pub(super) observes: bool,
+    /// Whether steps cost something, `c`.
+    pub(super) costs: bool,
     /// Whether there is a definition of two of its paths.
     pub(super) defined: bool,
 }
@@ -47,6 +49,7 @@ impl System {
             labels: Vec::new(),
             actions: Vec::new(),
             observes: false,
+            costs: false,
             defined: false,
         };
         let (head, items) = match random.below(4) {
@@ -290,6 +293,20 @@ impl System {
         }
         if random.once_in(3) {
             items += &format!("  absorb {};\n", proposition(random, &scope, 1));
+        }
+        let finite = self.vars.iter().all(|(_, kind)| !matches!(kind, Kind::Int | Kind::Real));
+        if finite && random.once_in(2) {
+            let action = &self.actions[0];
+            let there = proposition(random, &scope, 1);
+            items += &random
+                .one(&[
+                    "  cost c = 2;\n",
+                    "  cost c = if ACTION then 3 else 0;\n",
+                    "  cost c = if THERE then 2 else 1;\n",
+                ])
+                .replace("ACTION", &format!("action == {action}"))
+                .replace("THERE", &there);
+            self.costs = true;
         }
         if random.flip() {
             self.observes = true;

@@ -1,6 +1,7 @@
 //! States written one by one (`--states onehot` and `enum`): what can matter of a path is found first, and only that is
 //! written.
 
+mod ceiling;
 mod choice;
 mod instance;
 mod path;
@@ -10,6 +11,7 @@ mod sweep;
 use crate::names::{Copies, Names};
 use crate::value::{Val, merge};
 use crate::writing::{Bound, Env, PathIx, Writer, Writing, all_of};
+use ceiling::afford;
 use choice::Codings;
 use hyperplan_problem::{
     ActionId, Expr, FormulaId, Leaf, PathId, PathLeaf, State, System, SystemId, Trace, Value,
@@ -17,7 +19,7 @@ use hyperplan_problem::{
 use hyperplan_relevance::Error;
 use hyperplan_relevance::{
     Arena, Belief, Game, Goal, Instance, Known, Layers, Move, Narrowing, Numbering, Relevance, Relevant,
-    Start, believe, cases, generalize, in_state, leading,
+    Start, believe, cases, generalize, in_state, leading, least,
 };
 use hyperplan_smt::{Model, Script, Term, Terms};
 use hyperplan_space::{Graph, Letter, Run, StateIx, eval};
@@ -96,7 +98,14 @@ impl Writer for Enumerated<'_> {
         leading(&self.arena, block, goal, narrowing)
     }
 
+    fn least(&self, goal: &Goal) -> Result<Option<i64>, Error> {
+        least(&self.arena, goal).map(Some)
+    }
+
     fn believe(&self, block: &[PathId], goal: &Goal, budget: usize) -> Result<Belief<Vec<Known>>, Error> {
+        if !self.arena.ceilings.is_empty() {
+            return Ok(Belief::Unfit);
+        }
         let known =
             |runs: Vec<Run>| block.iter().zip(&runs).map(|(&path, run)| self.known_run(path, run)).collect();
         Ok(believe(&self.arena, block.len(), goal, budget)?.map(known))
@@ -245,6 +254,21 @@ impl Writing for EnumeratedQuery<'_, '_> {
             }
         }
         Ok(self.paths.push_and_get_key(declared))
+    }
+
+    fn afford(&mut self, script: &mut Script, env: &Env) -> Result<(), Error> {
+        let arena = &self.writer.arena;
+        for (number, ceiling) in arena.ceilings.iter().enumerate() {
+            let mut paths: Vec<(&EnumeratedPath, &[i64])> = Vec::new();
+            for (path, weights) in &ceiling.weights {
+                if let Some(declared) = env[usize::from(*path)] {
+                    paths.push((&self.paths[declared], weights));
+                }
+            }
+            script.section(format!("cost.{}", number + 1), "what the paths may cost");
+            afford(script, &arena.task, &paths, ceiling.most)?;
+        }
+        Ok(())
     }
 
     fn bind(&mut self, terms: &mut Terms, path: PathId, goal: &Goal) -> Result<Bound, Error> {

@@ -50,7 +50,8 @@ pub(crate) fn run(args: &args::Check, verbose: bool, out: &mut Output) -> Result
         out.remark(format_args!("note: {note}"));
     }
     if good && args.format == args::Format::Text {
-        let systems = count(lowered.problem.systems.len(), "system");
+        let systems =
+            count(lowered.problem.systems.iter().filter(|system| system.base.is_none()).count(), "system");
         let objectives = count(lowered.problem.objectives.len(), "objective");
         let more = match undecided {
             0 => String::new(),

@@ -8,17 +8,18 @@ use crate::files::write_bytes;
 use crate::guard;
 use crate::load::Loaded;
 use crate::output::Output;
-use crate::parameter::{Parameter, Searched};
+use crate::parameter::Searched;
 use crate::plans;
 use crate::report::{Picture, json, write_picture};
+use crate::wish::Wish;
 use hyperplan_outlet::one_line;
 use hyperplan_plan::{self as plan, MinimizeError};
 use hyperplan_problem::answer::plans::PlanFormat;
 use hyperplan_problem::answer::{
-    Answer, Below, Failed, Ordered, ReasonCode, Seconds, Size, Solver, Verdict, Verified, WitnessPath,
-    to_witness,
+    Answer, Below, CostValue, Failed, Ordered, ReasonCode, Seconds, Size, Solver, Verdict, Verified,
+    WitnessPath, to_witness,
 };
-use hyperplan_problem::{Objective, Quantifier, Strategy, Trace};
+use hyperplan_problem::{Objective, Quantifier, Strategy, Target, Trace, display};
 use hyperplan_render::{Board, Scene, TextStyle, actions_line, can_draw, table, text_map};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -31,13 +32,7 @@ const TABLE_ROWS: usize = 60;
 
 pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Output) -> Result {
     let config = config::Solve::new(args, out)?;
-    let (parameter, loaded) = match &args.minimize {
-        None => (None, Loaded::read(&args.problem, out)?),
-        Some(wanted) => {
-            let (parameter, loaded) = Parameter::read(&args.problem, wanted, out)?;
-            (Some(parameter), loaded)
-        }
-    };
+    let (wish, loaded) = Wish::read(args, out)?;
     let explain = Explain { queries: config.plan.queries.as_deref() };
     let objectives = loaded.selected(args.selection.objective.as_deref(), false)?;
     let pictures = pictures(&config, &loaded, &objectives, out)?;
@@ -51,8 +46,12 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
             break;
         }
         let start = Instant::now();
+        if matches!(wish, Wish::Constant(_)) && !objective.minimize.is_empty() {
+            let name = &objective.name;
+            out.remark(format_args!("note: {name}: its own `minimize` is left aside for `--minimize`"));
+        }
         guard::doing("searching for a strategy");
-        let (outcome, searched) = match solve(&loaded, objective, parameter.as_ref(), &config.plan, explain) {
+        let (outcome, searched, open) = match solve(&loaded, objective, &wish, &config.plan, explain) {
             Ok(found) => found,
             Err((failure, reason_code)) => {
                 // The other objectives may do better.
@@ -71,9 +70,9 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
         let objective = loaded.problem.objective(&objective.name).unwrap_or(objective);
         let searched = searched.as_ref();
         let own = outcome.reason.as_ref().filter(|_| searched.is_none());
-        let own = own.map(|reason| Why::new(reason, explain));
+        let own = own.or(open.undecided.as_ref()).map(|reason| Why::new(reason, explain));
         let why = own.as_ref().or_else(|| searched?.undecided.as_ref());
-        let answer = answer(loaded, objective, &outcome, searched, why, total);
+        let answer = answer(loaded, objective, &outcome, (searched, open.costs), why, total);
         let found = Found { loaded, objective, outcome: &outcome, answer: &answer, searched };
         if let Some(path) = &config.save {
             // Before anything else that may fail.
@@ -162,35 +161,61 @@ fn pictures(
     Ok(pictures)
 }
 
-/// The outcome for an objective, or for the least value of a constant.
+/// What is known of the costs of a strategy.
+#[derive(Default)]
+struct Costs {
+    costs: Vec<CostValue>,
+    /// Why they are perhaps not the least.
+    undecided: Option<plan::Reason>,
+}
+
+type Solved = (plan::Outcome, Option<Searched>, Costs);
+
+/// The outcome for an objective, or for the least value of a constant, or of the cheapest strategy.
 fn solve(
     loaded: &Loaded,
     objective: &Objective,
-    parameter: Option<&Parameter<'_>>,
+    wish: &Wish<'_>,
     config: &plan::Config,
     explain: Explain<'_>,
-) -> Result<(plan::Outcome, Option<Searched>), (Failure, ReasonCode)> {
+) -> Result<Solved, (Failure, ReasonCode)> {
     let name = &objective.name;
     let failed = |error: &plan::Error, value: String| {
         (explain.failure(format_args!("{name}{value}"), error), error.code())
     };
-    let Some(parameter) = parameter else {
-        let outcome = plan::solve(&loaded.problem, objective, config);
-        return outcome.map(|outcome| (outcome, None)).map_err(|error| failed(&error, String::new()));
-    };
-    match parameter.least(loaded, objective, config, explain) {
-        Ok((outcome, searched)) => Ok((outcome, Some(searched))),
-        Err(MinimizeError::Problem(failure)) => Err((failure, ReasonCode::Unsupported)),
-        Err(MinimizeError::Solve { value, error }) => {
-            Err(failed(&error, format!(" with {} = {value}", parameter.constant)))
-        }
+    if let Wish::Constant(parameter) = wish {
+        return match parameter.least(loaded, objective, config, explain) {
+            Ok((outcome, searched)) => Ok((outcome, Some(searched), Costs::default())),
+            Err(MinimizeError::Problem(failure)) => Err((failure, ReasonCode::Unsupported)),
+            Err(MinimizeError::Solve { value, error }) => {
+                Err(failed(&error, format!(" with {} = {value}", parameter.constant)))
+            }
+        };
     }
+    let targets = wish.targets(loaded, objective).map_err(|failure| (failure, ReasonCode::Unsupported))?;
+    if targets.is_empty() {
+        let outcome = plan::solve(&loaded.problem, objective, config);
+        return outcome
+            .map(|outcome| (outcome, None, Costs::default()))
+            .map_err(|error| failed(&error, String::new()));
+    }
+    let found = plan::cheapest(&loaded.problem, objective, &targets, config);
+    let plan::Cheapest { outcome, values, undecided } =
+        found.map_err(|error| failed(&error, String::new()))?;
+    let value = |(target, value): (&Target, &plan::Value)| CostValue {
+        expression: display::target(&loaded.problem, objective, target),
+        value: value.found,
+        least: value.least,
+    };
+    let costs = targets.iter().zip(&values).map(value).collect();
+    Ok((outcome, None, Costs { costs, undecided }))
 }
 
 fn status(answer: &Answer) -> Exit {
     match answer.verdict {
         // A value that need not be the least is not what was asked for.
         _ if answer.minimized.as_ref().is_some_and(|m| m.below == Below::Unknown) => Exit::Undecided,
+        _ if answer.costs.iter().any(|cost| cost.least < cost.value) => Exit::Undecided,
         Verdict::Realizable => Exit::Good,
         Verdict::Unrealizable => Exit::Unrealizable,
         Verdict::Unknown => Exit::Undecided,
@@ -201,7 +226,7 @@ fn answer(
     loaded: &Loaded,
     objective: &Objective,
     outcome: &plan::Outcome,
-    searched: Option<&Searched>,
+    (searched, costs): (Option<&Searched>, Vec<CostValue>),
     why: Option<&Why>,
     total: Duration,
 ) -> Answer {
@@ -233,6 +258,7 @@ fn answer(
             total: rounded(total.as_secs_f64()),
         },
         minimized: searched.map(|searched| searched.minimized.clone()),
+        costs,
     }
 }
 
@@ -304,10 +330,28 @@ impl<'a> Found<'a> {
             Verdict::Unrealizable => "unrealizable",
             Verdict::Unknown => "unknown",
         };
+        if !self.answer.costs.is_empty() {
+            return format!("{}: {verdict} with {}", self.objective.name, self.costs());
+        }
         match &self.answer.reason {
             Some(reason) => format!("{}: {verdict}: {}", self.objective.name, one_line(reason)),
             None => format!("{}: {verdict}", self.objective.name),
         }
+    }
+
+    /// What the strategy costs, and whether that is the least.
+    fn costs(&self) -> String {
+        let value = |cost: &CostValue| {
+            let CostValue { expression, value, least } = cost;
+            let least = match least < value {
+                true => format!("; whether less is possible, down to {least}, is unknown"),
+                false => ", the least".to_owned(),
+            };
+            format!("{expression} = {value}{least}")
+        };
+        let all: Vec<String> = self.answer.costs.iter().map(value).collect();
+        let why = self.answer.reason.iter().map(|reason| format!(": {}", one_line(reason)));
+        all.join("; ") + &why.collect::<String>()
     }
 
     fn text(&self, verbose: bool, color: bool) -> String {

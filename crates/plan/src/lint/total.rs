@@ -18,7 +18,7 @@ pub(super) fn total(system: &System) -> Result<(System, VarId), TooLarge> {
     let mut total = system.clone();
     let span = system.span;
     let ty = Type::Range { lo: FREE, hi: STUCK };
-    let var = total.vars.push_and_get_key(Var { name: "stuck".into(), ty, span });
+    let var = total.vars.push_and_get_key(Var { name: "stuck".into(), ty, sums: None, span });
     let free = is(var, FREE);
     let also_free = |e: &Expr<Leaf>| Expr::And(vec![free.clone(), e.clone()]);
     total.init = also_free(&system.init);

@@ -57,6 +57,21 @@ pub struct Answer {
     /// What is known of the least value of a constant, where that was asked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub minimized: Option<Minimized>,
+    /// What was to be as small as possible, under the strategy found, what counts most first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub costs: Vec<CostValue>,
+}
+
+/// The value of a sum of costs.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
+pub struct CostValue {
+    /// The sum.
+    pub expression: String,
+    /// Its value under the strategy, by the checker.
+    pub value: i64,
+    /// No strategy is below this, given the values before: the strategy is the cheapest where the two agree.
+    pub least: i64,
 }
 
 /// The search for the least value of a constant for which an objective is realizable. The rest of the answer is about

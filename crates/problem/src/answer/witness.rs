@@ -142,7 +142,9 @@ fn positions(system: &System, trace: &Trace) -> Option<Vec<(f64, f64)>> {
 pub fn write_state(system: &System, state: &State) -> Ordered<Scalar> {
     let crash = system.map.as_ref().and_then(|m| m.crash);
     let entries = system.vars.iter_enumerated().zip(state.iter());
-    let shown = entries.filter(|((id, _), v)| crash != Some(*id) || **v == Value::Bool(true));
+    // What costs add up to follows from the steps.
+    let declared = entries.filter(|((_, var), _)| var.sums.is_none());
+    let shown = declared.filter(|((id, _), v)| crash != Some(*id) || **v == Value::Bool(true));
     Ordered(shown.map(|((_, var), v)| (var.name.clone(), write_value(&var.ty, *v))).collect())
 }
 
@@ -233,7 +235,13 @@ fn read_trace(
     let states = states.map(|(step, state)| {
         read_state(system, state).map_err(|fault| WitnessError::State { path: name(), step, fault })
     });
-    Ok(Trace { path, actions: actions.collect::<Result<_, _>>()?, states: states.collect::<Result<_, _>>()? })
+    let mut trace = Trace {
+        path,
+        actions: actions.collect::<Result<_, _>>()?,
+        states: states.collect::<Result<_, _>>()?,
+    };
+    system.add_up(&mut trace);
+    Ok(trace)
 }
 
 /// The action of that name.
@@ -242,13 +250,15 @@ fn read_action(problem: &Problem, system: &System, name: &str) -> Option<ActionI
 }
 
 fn read_state(system: &System, given: &Ordered<Scalar>) -> Result<State, StateFault> {
-    if let Some((name, _)) = given.0.iter().find(|(name, _)| system.var(name).is_none()) {
-        let hint = hint(name, system.vars.iter().map(|v| v.name.as_str()));
+    let declared = || system.vars.iter().filter(|var| var.sums.is_none()).map(|var| var.name.as_str());
+    if let Some((name, _)) = given.0.iter().find(|(name, _)| !declared().any(|known| known == name)) {
+        let hint = hint(name, declared());
         return Err(StateFault::Unknown { system: system.name.clone(), variable: name.clone(), hint });
     }
     let crash: Option<VarId> = system.map.as_ref().and_then(|m| m.crash);
     let read = |(id, var): (VarId, &crate::system::Var)| match given.get(&var.name) {
         None if crash == Some(id) => Ok(Value::Bool(false)),
+        None if var.sums.is_some() => Ok(Value::Int(0)),
         None => Err(StateFault::Missing(var.name.clone())),
         Some(value) => read_value(&var.ty, value).ok_or_else(|| StateFault::Value {
             variable: var.name.clone(),
@@ -313,7 +323,7 @@ mod tests {
 
     fn example() -> Problem {
         let span = Span::new(SourceId(0), 0..0);
-        let var = |name: &str, ty| Var { name: name.to_owned(), ty, span };
+        let var = |name: &str, ty| Var { name: name.to_owned(), ty, sums: None, span };
         let lights: std::sync::Arc<[String]> = ["red".to_owned(), "green".to_owned()].into();
         let system = System {
             name: "Rooms".to_owned(),
@@ -325,6 +335,8 @@ mod tests {
             actions: vec![ActionId(0), ActionId(1)],
             clauses: Vec::new(),
             also: Vec::new(),
+            costs: ti_vec![],
+            base: None,
             edges: None,
             init: Expr::TRUE,
             labels: ti_vec![],
@@ -357,6 +369,7 @@ mod tests {
             mode: Mode::Bounded,
             semantics: None,
             formula,
+            minimize: Vec::new(),
             span,
         };
         Problem {

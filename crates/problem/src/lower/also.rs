@@ -6,7 +6,7 @@ use super::state::StateContext;
 use super::step::StepContext;
 use super::typed::labels_read;
 use crate::display;
-use crate::expr::{Expr, Leaf, Type, Value};
+use crate::expr::{Expr, Leaf, TupleSet, Type, Value};
 use crate::ids::{ActionId, LabelId, VarId};
 use crate::system::{Also, System};
 use hyperplan_syntax::{Diagnostic, Span, ast};
@@ -90,10 +90,12 @@ pub(super) fn demand_apart(cx: &mut StateContext, system: &System) {
 }
 
 /// Whether two guards hold in one state that does not absorb.
-enum Together {
+pub(super) enum Together {
+    /// They do not.
     Never,
     /// They do, in the states with these values, in words.
     Somewhere(String),
+    /// It would take too long to tell.
     Unknown,
 }
 
@@ -102,6 +104,14 @@ fn together(system: &System, guards: [&Expr<Leaf>; 2], looks: &mut usize) -> Tog
     let parts: Vec<&Expr<Leaf>> = guards.into_iter().flat_map(conjuncts).collect();
     let denied = |e: &Expr<Leaf>| matches!(e, Expr::Not(inner) if parts.contains(&&**inner));
     if parts.iter().any(|part| denied(part)) {
+        return Together::Never;
+    }
+    // Letters of a map, which may have millions of cells, are labels of cells that are no other's.
+    let cells: Vec<_> = parts.iter().filter_map(|part| members(system, part)).collect();
+    let apart = |(a, first): &(&[Expr<Leaf>], &TupleSet), (b, second): &(&[Expr<Leaf>], &TupleSet)| {
+        a == b && !first.tuples.iter().any(|tuple| second.contains(tuple))
+    };
+    if cells.iter().enumerate().any(|(at, first)| cells[at + 1..].iter().any(|second| apart(first, second))) {
         return Together::Never;
     }
     let mut all: Vec<Expr<Leaf>> = parts.into_iter().cloned().collect();
@@ -114,6 +124,18 @@ fn together(system: &System, guards: [&Expr<Leaf>; 2], looks: &mut usize) -> Tog
     }
 }
 
+/// What a condition says is in a set, and that set, if it is such a condition or a label with one.
+fn members<'s>(system: &'s System, e: &'s Expr<Leaf>) -> Option<(&'s [Expr<Leaf>], &'s TupleSet)> {
+    let e = match e {
+        Expr::Leaf(Leaf::Label(label)) => &system.labels[*label].expr,
+        e => e,
+    };
+    conjuncts(e).iter().find_map(|part| match part {
+        Expr::Member(tuple, set) => Some((tuple.as_slice(), &**set)),
+        _ => None,
+    })
+}
+
 fn conjuncts(e: &Expr<Leaf>) -> &[Expr<Leaf>] {
     match e {
         Expr::And(es) => es,
@@ -122,7 +144,7 @@ fn conjuncts(e: &Expr<Leaf>) -> &[Expr<Leaf>] {
 }
 
 /// Looks for values of the variables that a condition reads under which it holds, one variable after the other.
-fn satisfied(system: &System, condition: &Expr<Leaf>, looks: &mut usize) -> Together {
+pub(super) fn satisfied(system: &System, condition: &Expr<Leaf>, looks: &mut usize) -> Together {
     let vars = variables(system, condition);
     let mut values: TiVec<VarId, Option<Value>> = vec![None; system.vars.len()].into();
     // Of each variable that has a value, how many were tried.

@@ -69,7 +69,7 @@ fn mentions(body: &Expr, name: &str) -> bool {
         found |= match &e.kind {
             ExprKind::Name(other) => other == name,
             ExprKind::At(read, paths) => read.name == name || paths.iter().any(|path| path.name == name),
-            ExprKind::Call(_, args) => args.iter().any(|arg| arg.name == name),
+            ExprKind::Cost(_, args) | ExprKind::Call(_, args) => args.iter().any(|arg| arg.name == name),
             ExprKind::In(_, hyperplan_syntax::ast::Set::Enabled(path, _)) => path.name == name,
             _ => false,
         };

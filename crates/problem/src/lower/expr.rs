@@ -36,6 +36,13 @@ pub(crate) trait Context {
         self.error(Diagnostic::error("misplaced-path", span, message).with_help("paths belong to objectives"))
     }
 
+    /// `cost NAME[PATHS]`
+    fn cost(&mut self, name: &Ident, paths: &[Ident], span: Span) -> Option<Typed<Self::Leaf>> {
+        let _ = paths;
+        let message = format!("`cost {}` of a path: there are no paths here", name.name);
+        self.error(Diagnostic::error("misplaced-path", span, message).with_help("paths belong to objectives"))
+    }
+
     /// `NAME(ARGS)`
     fn call(
         &mut self,
@@ -109,6 +116,7 @@ fn typed_inner<C: Context>(cx: &mut C, e: &ast::Expr, hint: Option<&EnumType>) -
         ExprKind::Name(name) => named(cx, name, e.span, hint),
         ExprKind::Text(name) => quoted(cx, name, e.span, hint),
         ExprKind::At(name, paths) => cx.at(name, paths, e.span),
+        ExprKind::Cost(name, paths) => cx.cost(name, paths, e.span),
         ExprKind::Call(name, args) => cx.call(name, args, hint, e.span),
         ExprKind::Not(a) => truth(cx, a).map(|a| Typed::Bool(typed::not(a))),
         ExprKind::And(es) => truths(cx, es).map(|es| Typed::Bool(typed::and(es))),

@@ -167,7 +167,8 @@ impl Reader<'_, '_> {
         let states = states?;
         let count = states.len();
         let names: Vec<String> = edges.attributes.into_keys().collect();
-        let node = Var { name: "node".into(), ty: Type::Enum(states.into_keys().collect()), span };
+        let node =
+            Var { name: "node".into(), ty: Type::Enum(states.into_keys().collect()), sums: None, span };
         Some(Base {
             vars: [node].into_iter().collect(),
             actions: ids,

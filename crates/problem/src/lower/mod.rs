@@ -9,6 +9,7 @@ mod bodies;
 mod changes;
 mod clauses;
 mod consts;
+mod costs;
 mod damage;
 mod diagnostics;
 mod env;
@@ -24,6 +25,7 @@ mod labels;
 mod limits;
 mod maps;
 mod meaning;
+mod minimize;
 mod objective;
 mod order;
 mod paths;
@@ -48,6 +50,7 @@ pub use consts::Overrides;
 pub(crate) use diagnostics::Diagnostics;
 pub(crate) use fractions::number;
 pub use limits::{MAX_BOUND, MAX_DEPTH, MAX_NODES};
+pub use minimize::targets;
 pub use unused::uses;
 
 use crate::expr::Value;
@@ -151,7 +154,7 @@ pub fn lower(
     let mut actions = Actions::default();
     let mut env =
         Env { consts: &consts, actions: &mut actions, diagnostics: &mut diagnostics, sources, loader };
-    let (systems, poisoned) = systems(file, &mut env);
+    let (mut systems, poisoned) = systems(file, &mut env);
     let library = if uses_prelude(file) { prelude::parse(sources) } else { ast::File::default() };
     let (templates, template_names) = templates(file, &library, &mut diagnostics);
     let shared = Shared {
@@ -163,8 +166,10 @@ pub fn lower(
         templates,
         template_names,
     };
-    let objectives = objectives(file, &shared, &mut diagnostics);
+    let mut new = Vec::new();
+    let objectives = objectives(file, &shared, &mut new, &mut diagnostics);
     bodies::check(file, &shared, &mut diagnostics);
+    systems.extend(new);
     Lowered {
         problem: Problem { actions: actions.names, systems, objectives },
         diagnostics: diagnostics.into_list(),
@@ -246,6 +251,7 @@ fn defines<'a>(file: &'a ast::File, diagnostics: &mut Diagnostics) -> Defines<'a
 fn objectives(
     file: &ast::File,
     shared: &Shared,
+    new: &mut Vec<crate::system::System>,
     diagnostics: &mut Diagnostics,
 ) -> Vec<crate::objective::Objective> {
     let mut objectives = Vec::new();
@@ -256,7 +262,7 @@ fn objectives(
             diagnostics.push(duplicate("objective", &ast.name, first));
             continue;
         }
-        match lower_objective(shared, ast, diagnostics) {
+        match lower_objective(shared, ast, new, diagnostics) {
             Some(objective) => objectives.push(objective),
             // Whatever is refused was reported; should that be forgotten somewhere, nothing may pass in silence.
             None if !diagnostics.any_error() => {

@@ -3,9 +3,11 @@
 use super::Diagnostics;
 use super::base::Actions;
 use super::consts::{Consts, duplicate};
+use super::costs::{demand_plain, with_sums};
 use super::diagnostics::suggest;
 use super::formula::number_of_steps;
 use super::limits::Limits;
+use super::minimize::lower_minimize;
 use super::paths::{Defines, Frame, PathContext};
 use super::semantics;
 use super::template::{Bindings, bind};
@@ -37,10 +39,11 @@ struct Body<'a> {
     consts: Consts,
 }
 
-/// An objective; `None` after a message.
+/// An objective; `None` after a message. Systems that only such objectives have are added to those that are `new`.
 pub(super) fn lower_objective(
     shared: &Shared,
     ast: &ast::Objective,
+    new: &mut Vec<System>,
     diagnostics: &mut Diagnostics,
 ) -> Option<Objective> {
     let mode = mode(shared, ast, diagnostics);
@@ -63,7 +66,7 @@ pub(super) fn lower_objective(
             Body { formula: &template.formula, bindings, consts }
         }
     };
-    let objective = lower_body(shared, ast, &body, mode, diagnostics);
+    let objective = lower_body(shared, ast, &body, mode, new, diagnostics);
     if matches!(ast.body, ObjectiveBody::Instance { .. }) {
         diagnostics.leave_use();
     }
@@ -103,6 +106,7 @@ fn lower_body(
     ast: &ast::Objective,
     body: &Body,
     mode: Option<(Mode, Option<Semantics>)>,
+    new: &mut Vec<System>,
     diagnostics: &mut Diagnostics,
 ) -> Option<Objective> {
     if body.formula.quantifiers.is_empty() {
@@ -127,19 +131,26 @@ fn lower_body(
         // After a refused length nothing more is to be said about bounds.
         mode: mode.map_or(Mode::Within(0), |m| m.0),
         formula: Formula::default(),
+        cost: None,
         diagnostics,
         limits: Limits::default(),
     };
     cx.formula(&body.formula.body)?;
-    let (paths, formula) = (cx.paths, cx.formula);
+    let (paths, formula, cost) = (cx.paths, cx.formula, cx.cost);
     if !complete {
         return None;
     }
     let (name, span) = (ast.name.name.clone(), ast.name.span);
     let (mode, semantics) = mode?;
-    let mut objective = Objective { name, paths, mode, semantics, formula, span };
+    let mut objective = Objective { name, paths, mode, semantics, formula, minimize: Vec::new(), span };
+    let wishes = &body.formula.minimize;
+    let poisoned = Some(shared.poisoned);
+    let minimize = lower_minimize(shared.systems, poisoned, &objective, &body.consts, wishes, diagnostics);
     unused_paths(&objective, diagnostics);
+    demand_plain(&objective, cost, diagnostics)?;
     translate(&mut objective, diagnostics)?;
+    objective.minimize = minimize?;
+    with_sums(shared.systems, &mut objective, new, diagnostics)?;
     Some(objective)
 }
 

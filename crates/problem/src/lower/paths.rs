@@ -2,12 +2,13 @@
 
 use super::base::Actions;
 use super::consts::Consts;
+use super::costs;
 use super::diagnostics::{Diagnostics, suggest};
 use super::expr::{Context, typed};
 use super::limits::Limits;
 use super::state::has_value;
 use super::template::{Bindings, unquantified_path};
-use super::typed::{EnumType, Typed};
+use super::typed::{Bounds, EnumType, Typed};
 use crate::expr::{Expr, Leaf, PathLeaf};
 use crate::formula::Formula;
 use crate::ids::{PathId, SystemId};
@@ -48,6 +49,8 @@ pub(super) struct PathContext<'a> {
     pub(super) expanding: Vec<&'a str>,
     pub(super) mode: Mode,
     pub(super) formula: Formula,
+    /// Where a cost is read first.
+    pub(super) cost: Option<Span>,
     pub(super) diagnostics: &'a mut Diagnostics,
     pub(super) limits: Limits,
 }
@@ -241,6 +244,16 @@ impl Context for PathContext<'_> {
             }
             _ => self.read(&name.name, name.span, path),
         }
+    }
+
+    fn cost(&mut self, name: &Ident, paths: &[Ident], span: Span) -> Option<Typed<PathLeaf>> {
+        let path = self.one_path(name, paths, span)?;
+        let poisoned = self.poisoned[self.paths[path].system];
+        let system = self.system(path);
+        let cost = costs::known_cost(system, name, poisoned, self.diagnostics)?;
+        self.cost.get_or_insert(span);
+        let leaf = PathLeaf::State(path, Leaf::Var(costs::placeholder(system, cost)));
+        Some(Typed::Int(Expr::Leaf(leaf), Some(Bounds { lo: 0, hi: costs::most(&system.costs[cost]) })))
     }
 
     fn call(

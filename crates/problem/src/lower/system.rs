@@ -9,7 +9,7 @@ use super::labels;
 use super::limits::{Limits, MAX_RANGE};
 use super::state::{Names, StateContext};
 use super::typed::{Typed, and, or};
-use super::{also, graphs, maps};
+use super::{also, costs, graphs, maps};
 use crate::edges::Edges;
 use crate::expr::{Expr, Leaf, Type};
 use crate::ids::{ActionId, LabelId, VarId};
@@ -17,6 +17,7 @@ use crate::system::{Label, System, Var};
 use hyperplan_syntax::ast::{self, Ident, SystemItem, SystemKind};
 use hyperplan_syntax::{Diagnostic, Span};
 use rustc_hash::FxHashMap;
+use typed_index_collections::TiVec;
 
 /// Names with a meaning of their own in objectives.
 const RESERVED: [&str; 5] = ["action", "state", "obs", "enabled", "none"];
@@ -44,6 +45,8 @@ pub(crate) fn lower_system(ast: &ast::System, env: &mut Env) -> (System, bool) {
         actions,
         clauses: base.clauses,
         also: Vec::new(),
+        costs: TiVec::new(),
+        base: None,
         edges: base.edges,
         init: base.init,
         labels: labels.into_iter().collect(),
@@ -127,7 +130,7 @@ fn variables(cx: &mut StateContext, ast: &ast::System) {
             match lower_type(cx, declaration) {
                 Some(ty) if declare(cx, &declaration.name, Leaf::Var(id)) => {
                     let (name, span) = (declaration.name.name.clone(), declaration.name.span);
-                    cx.vars.push(Var { name, ty, span });
+                    cx.vars.push(Var { name, ty, sums: None, span });
                 }
                 _ => cx.poisoned = true,
             }
@@ -238,6 +241,7 @@ fn lower_item(
         SystemItem::State(_) | SystemItem::Label(..) | SystemItem::Action(_) => {}
         SystemItem::On(clause) => system.clauses.extend(lower_clause(cx, clause, system, actions)),
         SystemItem::Also(clause) => system.also.extend(also::lower_also(cx, clause, system, actions)),
+        SystemItem::Cost(name, e) => system.costs.extend(costs::lower_cost(cx, name, e, system, actions)),
         SystemItem::Init(e) => {
             if let Some(e) = truth(cx, e) {
                 system.init = and([std::mem::replace(&mut system.init, Expr::TRUE), e]);

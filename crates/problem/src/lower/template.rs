@@ -71,7 +71,9 @@ pub(super) fn check(template: &ast::Template, diagnostics: &mut Diagnostics) {
 pub(super) fn unquantified(body: &Expr, known: &[&str], diagnostics: &mut Diagnostics) {
     visit(body, &mut |e| {
         let paths: Vec<&Ident> = match &e.kind {
-            ExprKind::At(_, paths) | ExprKind::Call(_, paths) => paths.iter().collect(),
+            ExprKind::At(_, paths) | ExprKind::Cost(_, paths) | ExprKind::Call(_, paths) => {
+                paths.iter().collect()
+            }
             ExprKind::In(_, ast::Set::Enabled(path, _)) => vec![path],
             _ => return,
         };

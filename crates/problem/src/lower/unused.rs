@@ -107,7 +107,9 @@ impl<'a> Uses<'a> {
     }
 
     fn formula(&mut self, formula: &'a Formula) {
-        self.exprs(formula.defines.iter().map(|define| &define.body).chain([&formula.body]));
+        self.exprs(
+            formula.defines.iter().map(|define| &define.body).chain([&formula.body]).chain(&formula.minimize),
+        );
     }
 
     fn system_item(&mut self, item: &'a SystemItem) {
@@ -130,7 +132,10 @@ impl<'a> Uses<'a> {
                     }
                 }
             }
-            SystemItem::Init(e) | SystemItem::Label(_, e) | SystemItem::Absorb(e) => self.exprs([e]),
+            SystemItem::Init(e)
+            | SystemItem::Label(_, e)
+            | SystemItem::Cost(_, e)
+            | SystemItem::Absorb(e) => self.exprs([e]),
             SystemItem::Observe(es) => self.exprs(es),
             SystemItem::Map { item, .. } => self.exprs(item.exprs()),
             _ => {}

@@ -18,6 +18,7 @@ fn push_parts<'a>(e: &'a Expr, stack: &mut Vec<&'a Expr>) {
         | ExprKind::Name(_)
         | ExprKind::Text(_)
         | ExprKind::At(..)
+        | ExprKind::Cost(..)
         | ExprKind::Call(..) => {}
         ExprKind::Not(a) | ExprKind::Neg(a) => stack.push(a),
         ExprKind::And(es) | ExprKind::Or(es) | ExprKind::Tuple(es) => stack.extend(es),

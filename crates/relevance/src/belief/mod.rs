@@ -115,6 +115,7 @@ fn narrowed<const N: usize>(
         slack,
         least: 0,
         one_run: false,
+        ceiling: None,
         budget: arena.task.limits.pairs,
     };
     let alone = |at: usize, slack| {

@@ -4,6 +4,7 @@ use super::atoms::Bits;
 use super::bound::Bound;
 use super::product::Product;
 use super::question::{Explored, Place, Question};
+use crate::ceiling::{Ceiling, NO_WAY, transitions};
 use crate::layers::Layers;
 use crate::residual::{FALSE, Residual, TRUE};
 use crate::task::Error;
@@ -74,7 +75,20 @@ impl<'a, const N: usize> Exploration<'a, N> {
     /// Explores forwards, and keeps what can matter.
     pub(crate) fn explore(mut self) -> Result<Explored<N>, Error> {
         let forward = self.forward()?;
-        let run = self.product.question.one_run.then(|| self.run(&forward)).flatten();
+        let Question { one_run, ceiling, .. } = *self.product.question;
+        let run = match ceiling.filter(|_| one_run) {
+            None => one_run.then(|| self.run(&forward)).flatten(),
+            Some(ceiling) => {
+                let cheapest = self.cheapest(&forward, ceiling);
+                if cheapest.as_ref().is_none_or(|(cost, _)| *cost > ceiling.most) {
+                    // The goal is met by no run that costs so little.
+                    let none = Layers { at: vec![Vec::new(); forward.len()] };
+                    let layers = std::array::from_fn(|_| none.clone());
+                    return Ok(Explored { layers, lossy: self.lossy });
+                }
+                cheapest.map(|(_, layers)| layers)
+            }
+        };
         let lossy = self.lossy || run.is_some();
         Ok(Explored { layers: run.unwrap_or_else(|| self.backward(&forward)), lossy })
     }
@@ -317,20 +331,62 @@ impl<'a, const N: usize> Exploration<'a, N> {
         best.reverse();
         let first =
             (0..best[0].len()).min_by_key(|&at| best[0][at]).filter(|&at| best[0][at].0 < u32::MAX)?;
+        let way = best.iter().scan(first, |here, best| Some(std::mem::replace(here, best[*here].1 as usize)));
+        Some(self.layers_of(forward, way))
+    }
+
+    /// The least that a run costs, and the layers of such a run; `None` where there is no run.
+    fn cheapest(&self, forward: &[Stage<N>], ceiling: &Ceiling) -> Option<(i64, [Layers; N])> {
+        let Question { paths, arena, .. } = self.product.question;
+        let weights = paths.map(|path| ceiling.of(path));
+        // By stage and joint state: the least that is still to be paid, and the successor that leads there.
+        let mut best: Vec<Vec<(i64, u32)>> = Vec::with_capacity(forward.len());
+        for (time, stage) in forward.iter().enumerate().rev() {
+            let Some(later) = best.last() else {
+                best.push(vec![(0, 0); stage.joints.len()]);
+                continue;
+            };
+            let next = &forward[time + 1].joints;
+            // The paths may have one action in common, and the least of each be of others: it is a bound all the same.
+            let weight = |at: usize, from: StateIx, there: StateIx| match weights[at] {
+                Some(weights) if time < arena.task.horizon(paths[at]) as usize => {
+                    let steps = transitions(self.product.graphs[at], weights, from);
+                    steps.filter(|step| step.1 == there).map(|step| step.2).min().unwrap_or(NO_WAY)
+                }
+                _ => 0,
+            };
+            let step = |joint: usize| {
+                let from = stage.joints[joint].1;
+                let way = |&to: &u32| {
+                    let there = next[to as usize].1;
+                    let own = (0..N).map(|at| weight(at, from[at], there[at]));
+                    let cost = own.fold(later[to as usize].0, i64::saturating_add);
+                    (cost.min(NO_WAY), to)
+                };
+                stage.successors(joint).iter().map(way).min().unwrap_or((NO_WAY, 0))
+            };
+            best.push((0..stage.joints.len()).map(step).collect());
+        }
+        best.reverse();
+        let first = (0..best[0].len()).min_by_key(|&at| best[0][at]).filter(|&at| best[0][at].0 < NO_WAY)?;
+        let way = best.iter().scan(first, |here, best| Some(std::mem::replace(here, best[*here].1 as usize)));
+        Some((best[0][first].0, self.layers_of(forward, way)))
+    }
+
+    /// The layers of one run through these joint states.
+    fn layers_of(&self, forward: &[Stage<N>], run: impl Iterator<Item = usize>) -> [Layers; N] {
         let mut layers: [Layers; N] = std::array::from_fn(|_| Layers { at: Vec::new() });
-        let mut here = first;
-        for (stage, best) in forward.iter().zip(&best) {
+        for (stage, here) in forward.iter().zip(run) {
             for (at, layers) in layers.iter_mut().enumerate() {
                 layers.at.push(vec![stage.joints[here].1[at]]);
             }
-            here = best[here].1 as usize;
         }
         for (at, layers) in layers.iter_mut().enumerate() {
             layers.at.truncate(
                 self.product.question.arena.task.horizon(self.product.question.paths[at]) as usize + 1,
             );
         }
-        Some(layers)
+        layers
     }
 
     fn too_large(&self) -> Error {
@@ -344,6 +400,12 @@ impl<'a, const N: usize> Exploration<'a, N> {
 }
 
 impl<'a> Exploration<'a, 1> {
+    /// The least that a run costs; [`NO_WAY`] where there is none.
+    pub(crate) fn least_cost(mut self, ceiling: &Ceiling) -> Result<i64, Error> {
+        let forward = self.forward()?;
+        Ok(self.cheapest(&forward, ceiling).map_or(NO_WAY, |(cost, _)| cost))
+    }
+
     /// Measures first how far states are from where nothing is owed.
     pub(crate) fn bounded(question: &'a Question<'a, 1>) -> Self {
         let mut exploration = Exploration::new(question);

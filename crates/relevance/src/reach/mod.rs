@@ -38,6 +38,7 @@ pub(crate) use explore::Exploration;
 pub(crate) use product::Product;
 pub(crate) use question::{Explored, Place, Question};
 
+use crate::ceiling::Ceiling;
 use crate::task::Error;
 
 /// The states of an explored path that can matter at each time; those of one run, if that is enough and
@@ -61,4 +62,14 @@ pub(crate) fn pair_layers(question: &Question<'_, 2>) -> Result<Explored<2>, Err
 /// A time before which no run of an explored path owes nothing but safety.
 pub(crate) fn least(question: &Question<'_, 1>) -> u32 {
     Exploration::bounded(question).least()
+}
+
+/// What no run of an explored path counts less than in the sum of a ceiling; [`NO_WAY`] if it has none.
+///
+/// # Errors
+/// [`Error::TooLarge`] beyond the budget.
+///
+/// [`NO_WAY`]: crate::ceiling::NO_WAY
+pub(crate) fn least_cost(question: &Question<'_, 1>, ceiling: &Ceiling) -> Result<i64, Error> {
+    Exploration::bounded(question).least_cost(ceiling)
 }

@@ -1,5 +1,6 @@
 //! What is asked about one path, or about two at once.
 
+use crate::ceiling::Ceiling;
 use crate::goal::Goal;
 use crate::layers::Layers;
 use crate::task::Arena;
@@ -29,6 +30,8 @@ pub(crate) struct Question<'a, const N: usize> {
     pub(crate) least: u32,
     /// Whether one run is enough, of those that are there first.
     pub(crate) one_run: bool,
+    /// What the paths may cost: the one run is then a cheapest.
+    pub(crate) ceiling: Option<&'a Ceiling>,
     /// Joint states, over all times, beyond which to give up.
     pub(crate) budget: usize,
 }
@@ -38,7 +41,8 @@ impl<'a, const N: usize> Question<'a, N> {
     pub(crate) fn about<const M: usize>(&self, paths: [PathId; M]) -> Question<'a, M> {
         let Question { arena, goal, fixed, declared, slack, least, one_run, budget, .. } = *self;
         let within = [None; M];
-        Question { arena, paths, within, goal, fixed, declared, slack, least, one_run, budget }
+        let ceiling = None;
+        Question { arena, paths, within, goal, fixed, declared, slack, least, one_run, ceiling, budget }
     }
 }
 

@@ -2,12 +2,17 @@
 
 use super::recover::{Block, ITEMS, TOP};
 use super::{Abort, Parse, Parser, habit};
-use crate::ast::{Const, Define, File, Formula, Ident, Item, Objective, ObjectiveBody, Quantifier, Template};
+use crate::ast::{
+    Const, Define, Expr, File, Formula, Ident, Item, Objective, ObjectiveBody, Quantifier, Template,
+};
 use crate::diagnostic::Diagnostic;
 use crate::operator::Operator;
 use crate::similar::similar;
 use crate::span::Span;
 use crate::token::{EQUALS, Tok, Token};
+
+/// The word before what is to be as small as possible.
+pub(super) const MINIMIZE: &str = "minimize";
 
 impl Parser<'_> {
     pub(super) fn file(&mut self) -> File {
@@ -173,15 +178,28 @@ impl Parser<'_> {
         let inside = self.member(Block::Formula, |parser| {
             let quantifiers = parser.quantifiers()?;
             let body = parser.expr()?;
+            let minimize = parser.minimize()?;
             parser.end_of_formula()?;
-            Ok((quantifiers, body))
+            Ok((quantifiers, body, minimize))
         });
         if inside.is_some() {
             self.close_block(open, "an operator or `}`");
         } else {
             let _ = self.eat(Tok::RBrace);
         }
-        Ok(inside.map(|(quantifiers, body)| Formula { defines, quantifiers, body }))
+        Ok(inside.map(|(quantifiers, body, minimize)| Formula { defines, quantifiers, body, minimize }))
+    }
+
+    /// `minimize EXPR, ...;` behind a formula, if it is there.
+    fn minimize(&mut self) -> Parse<Vec<Expr>> {
+        if self.eat_word(MINIMIZE).is_none() {
+            return Ok(Vec::new());
+        }
+        let all = self.separated(Self::expr)?;
+        if self.eat(Tok::Semi).is_none() {
+            return self.fail("an operator, `,` or `;`");
+        }
+        Ok(all)
     }
 
     fn end_of_formula(&mut self) -> Parse<()> {

@@ -2,6 +2,7 @@
 //! and sets.
 
 use super::expr::{Bounds, Node};
+use super::item::MINIMIZE;
 use super::{Abort, Parse, Parser, ident};
 use crate::ast::{Expr, ExprKind, Interval, Set};
 use crate::diagnostic::Diagnostic;
@@ -118,7 +119,15 @@ impl Parser<'_> {
     #[inline(never)]
     fn named(&mut self) -> Parse<Node> {
         let token = self.bump();
+        let costs = token.text == "cost" && self.peek() == Tok::Ident && self.peek_at(1) == Tok::LBracket;
         let kind = match self.peek() {
+            _ if costs => {
+                let cost = ident(self.bump());
+                self.bump();
+                let paths = self.names("a path variable")?;
+                self.expect(Tok::RBracket, "`]` after the path variable")?;
+                ExprKind::Cost(cost, paths)
+            }
             Tok::LBracket => {
                 self.bump();
                 let paths = self.names("a path variable")?;
@@ -140,7 +149,8 @@ impl Parser<'_> {
         let operand = matches!(token.tok, Tok::Ident | Tok::Number)
             || token.prefix().is_some_and(|row| row.operator != Operator::Neg);
         let operator = token.infix().or(token.slip(false)).is_some();
-        if !operand || operator || token.first_on_line || self.at_word("semantics") {
+        if !operand || operator || token.first_on_line || self.at_word("semantics") || self.at_word(MINIMIZE)
+        {
             return Ok(());
         }
         let span = self.tokens[self.at - 1].span;

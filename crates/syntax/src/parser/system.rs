@@ -132,6 +132,11 @@ impl Parser<'_> {
                 self.equals()?;
                 SystemItem::Label(name, self.expr()?)
             }
+            "cost" => {
+                let name = self.name("the name of a cost")?;
+                self.equals()?;
+                SystemItem::Cost(name, self.expr()?)
+            }
             "scenario" | "unknown" | "inflate" | "scale" | "crop" => {
                 let (item, expected) = self.map_item(word)?;
                 let span = self.since(start.span);

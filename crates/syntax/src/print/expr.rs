@@ -113,6 +113,10 @@ fn parts<'a>(e: &'a Expr, out: &mut Tasks<'a>) {
         ExprKind::Number(word) | ExprKind::Name(word) => out.push(Task::Text(word.clone().into())),
         ExprKind::Text(name) => out.push(Task::Text(quoted(name).into())),
         ExprKind::At(name, paths) => out.push(applied(name, "[", paths, "]")),
+        ExprKind::Cost(name, paths) => {
+            out.push(text("cost "));
+            out.push(applied(name, "[", paths, "]"));
+        }
         ExprKind::Call(name, args) => out.push(applied(name, "(", args, ")")),
         ExprKind::Not(a) => prefix(Operator::Not, None, a, out),
         ExprKind::Neg(a) => prefix(Operator::Neg, None, a, out),

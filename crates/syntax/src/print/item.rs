@@ -87,6 +87,7 @@ impl Printer<'_> {
             self.layout.soft_indented(2);
             self.quantifiers(&formula.quantifiers);
             self.body(formula, 4);
+            self.minimize(formula, 2);
             self.layout.soft();
             self.layout.text("}");
             self.layout.close();
@@ -100,8 +101,24 @@ impl Printer<'_> {
         self.layout.open(Indent::By(0));
         self.quantifiers(&formula.quantifiers);
         self.body(formula, 2);
+        self.minimize(formula, 0);
         self.layout.close();
         self.close_block(close);
+    }
+
+    /// ` minimize EXPR, ...;`, on a line of its own where it has one, or needs one.
+    fn minimize(&mut self, formula: &Formula, indent: usize) {
+        let (Some(first), Some(last)) = (formula.minimize.first(), formula.minimize.last()) else { return };
+        let word = self.source.word_before(self.source.opening(start(first)));
+        if self.source.breaks_between(end(&formula.body), word) || self.source.comments_before(word) > 0 {
+            self.comments(word);
+            self.layout.line(false);
+        } else {
+            self.layout.soft_indented(indent);
+        }
+        self.layout.text("minimize ");
+        self.exprs(&formula.minimize);
+        self.semicolon(end(last));
     }
 
     /// The body behind the quantifiers; on a line of its own where it has one, or needs one.

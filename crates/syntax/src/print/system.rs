@@ -70,6 +70,7 @@ impl Printer<'_> {
             SystemItem::Action(names) | SystemItem::Moves(names) => names.first().map(|name| name.span),
             SystemItem::Init(e) | SystemItem::Absorb(e) => Some(e.span),
             SystemItem::Label(name, _)
+            | SystemItem::Cost(name, _)
             | SystemItem::Obstacle(name)
             | SystemItem::Edge(name)
             | SystemItem::Corner(name) => Some(name.span),
@@ -94,6 +95,10 @@ impl Printer<'_> {
             }
             SystemItem::Label(name, e) => {
                 self.assignment(format!("label {}", name.name), e);
+                end(e)
+            }
+            SystemItem::Cost(name, e) => {
+                self.assignment(format!("cost {}", name.name), e);
                 end(e)
             }
             SystemItem::Obstacle(rule) => self.named("obstacle ", std::slice::from_ref(rule)),

@@ -75,6 +75,7 @@ pub fn show(expr: &Expr) -> String {
         ExprKind::Number(text) | ExprKind::Name(text) => text.clone(),
         ExprKind::Text(text) => format!("{text:?}"),
         ExprKind::At(name, paths) => format!("{}[{}]", name.name, names(paths)),
+        ExprKind::Cost(name, paths) => format!("cost {}[{}]", name.name, names(paths)),
         ExprKind::Call(name, args) => format!("{}({})", name.name, names(args)),
         ExprKind::Not(inner) => format!("(! {})", show(inner)),
         ExprKind::Neg(inner) => format!("(- {})", show(inner)),

@@ -92,7 +92,10 @@ fn quantifiers(random: &mut Random) -> Vec<Quantifier> {
 }
 
 fn formula(random: &mut Random, depth: u32) -> Formula {
-    Formula { defines: defines(random), quantifiers: quantifiers(random), body: expr(random, depth) }
+    let (defines, quantifiers, body) = (defines(random), quantifiers(random), expr(random, depth));
+    let wishes = if random.below(4) == 0 { 1 + random.below(2) } else { 0 };
+    let minimize = (0..wishes).map(|_| expr(random, 2)).collect();
+    Formula { defines, quantifiers, body, minimize }
 }
 
 fn objective(random: &mut Random) -> Objective {
@@ -123,7 +126,7 @@ fn system(random: &mut Random) -> System {
 }
 
 fn system_item(random: &mut Random) -> SystemItem {
-    match random.below(17) {
+    match random.below(18) {
         0 => SystemItem::State((0..1 + random.below(3)).map(|_| state(random)).collect()),
         1 => SystemItem::Action(idents(random, 1)),
         2 => SystemItem::On(clause(random)),
@@ -136,6 +139,7 @@ fn system_item(random: &mut Random) -> SystemItem {
         9 => SystemItem::Edge(ident(random)),
         10..=14 => SystemItem::Map { item: Box::new(map_item(random)), span: NOWHERE },
         15 => SystemItem::Also(clause(random)),
+        16 => SystemItem::Cost(ident(random), expr(random, 3)),
         _ => SystemItem::Legend {
             letter: Text {
                 text: random.one(&["W", "é", " ", "\"", "#", "#0000ff", "#00Ff0080"]).to_owned(),
@@ -199,11 +203,12 @@ fn expr(random: &mut Random, depth: u32) -> Expr {
 }
 
 fn leaf(random: &mut Random) -> ExprKind {
-    match random.below(7) {
+    match random.below(8) {
         0 => ExprKind::Bool(random.flip()),
         1 => ExprKind::Number(random.one(&["0", "12", "0.5"]).to_owned()),
         2 => ExprKind::At(ident(random), idents(random, 1)),
         3 => ExprKind::Call(ident(random), idents(random, 0)),
+        5 => ExprKind::Cost(ident(random), idents(random, 1)),
         4 => ExprKind::Text(random.one(&["room A", "17", "say \"hi\"", "back\\slash"]).to_owned()),
         _ => ExprKind::Name(ident(random).name),
     }

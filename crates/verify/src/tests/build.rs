@@ -29,10 +29,13 @@ pub(crate) fn system(n: i64, actions: u32, edges: &[(i64, u32, i64)], init: &[i6
     });
     System {
         name: "M".into(),
-        vars: vec![Var { name: "s".into(), ty: Type::Range { lo: 0, hi: n - 1 }, span: span() }].into(),
+        vars: vec![Var { name: "s".into(), ty: Type::Range { lo: 0, hi: n - 1 }, sums: None, span: span() }]
+            .into(),
         actions: (0..actions).map(ActionId).collect(),
         clauses: clauses.collect(),
         also: Vec::new(),
+        costs: Vec::new().into(),
+        base: None,
         edges: None,
         init: Expr::Or(init.iter().map(|&i| is(Leaf::Var(S), i)).collect()),
         labels: vec![Label { name: "zero".into(), expr: is(Leaf::Var(S), 0), nested: false, span: span() }]
@@ -115,7 +118,8 @@ pub(crate) fn problem(system: System, prefix: &str, mode: Mode, f: &F) -> Proble
     let mut formula = Formula::default();
     push(f, &mut formula);
     let (name, paths) = ("o".into(), paths.collect());
-    let objective = Objective { name, paths, mode, semantics: None, formula, span: span() };
+    let objective =
+        Objective { name, paths, mode, semantics: None, formula, minimize: Vec::new(), span: span() };
     Problem {
         actions: system.actions.iter().map(|a| format!("a{}", a.0)).collect(),
         systems: vec![system].into(),

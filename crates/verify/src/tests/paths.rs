@@ -71,6 +71,7 @@ fn large_types_do_not_matter_where_init_fixes_them() {
     large.vars.push(Var {
         name: "n".into(),
         ty: Type::Range { lo: 0, hi: 1 << 40 },
+        sums: None,
         span: super::build::span(),
     });
     let all = problem(large.clone(), "e", Mode::Bounded, &F::At(0, 0));

@@ -30,7 +30,12 @@ fn grid(n: i64) -> System {
         span: span(),
         generated: true,
     };
-    let var = |name: &str| Var { name: name.into(), ty: Type::Range { lo: 0, hi: n - 1 }, span: span() };
+    let var = |name: &str| Var {
+        name: name.into(),
+        ty: Type::Range { lo: 0, hi: n - 1 },
+        sums: None,
+        span: span(),
+    };
     let label = |name: &str, expr| Label { name: name.into(), expr, nested: false, span: span() };
     System {
         name: "Grid".into(),
@@ -38,6 +43,8 @@ fn grid(n: i64) -> System {
         actions: (0..4).map(ActionId).collect(),
         clauses: vec![clause(0, X, 1), clause(1, X, -1), clause(2, Y, 1), clause(3, Y, -1)],
         also: Vec::new(),
+        costs: Vec::new().into(),
+        base: None,
         edges: None,
         init: Expr::TRUE,
         labels: vec![label("start", corner(0)), label("goal", corner(n - 1))].into(),
@@ -71,6 +78,7 @@ fn shortest(n: i64, horizon: u32) -> Problem {
         mode: Mode::Bounded,
         semantics: None,
         formula: f,
+        minimize: Vec::new(),
         span: span(),
     };
     Problem {

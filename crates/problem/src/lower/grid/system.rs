@@ -151,7 +151,7 @@ pub(crate) fn base(map: &GridMap, rules: &Rules, actions: &mut Actions, span: Sp
 
 fn variables(map: &GridMap, can_crash: bool, span: Span) -> TiVec<VarId, Var> {
     let range = |size: u32| Type::Range { lo: 0, hi: i64::from(size) - 1 };
-    let var = |name: &str, ty| Var { name: name.to_owned(), ty, span };
+    let var = |name: &str, ty| Var { name: name.to_owned(), ty, sums: None, span };
     let mut vars: TiVec<VarId, Var> = TiVec::new();
     vars.push(var("x", range(map.width)));
     vars.push(var("y", range(map.height)));

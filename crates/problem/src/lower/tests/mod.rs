@@ -1,4 +1,5 @@
 mod changes;
+mod costs;
 mod display;
 mod graphs;
 mod grids;

@@ -260,3 +260,44 @@ fn several_mistakes_in_one_run() {
     assert_eq!(codes("const A = 1; const A = 2;")[0].0, "duplicate-name");
     assert_eq!(codes("system S = graph(\"g.json\") { }")[0].0, "cannot-read");
 }
+
+#[test]
+fn what_transitions_do_besides() {
+    let system = system(
+        "system M = grid { \"S.\" \".#\" } {
+            obstacle stay; edge crash;
+            state batt: 0..2;
+            also on right | up when batt > 0 { batt' = if action == up then batt - 1 else 0; }
+            also on right when batt == 0 { batt' in {0, 2}; }
+        }",
+    );
+    let at = |x, y, crash, batt| vec![Value::Int(x), Value::Int(y), Value::Bool(crash), Value::Int(batt)];
+    let go = |state: Vec<Value>, action: &str| {
+        let names = ["up", "down", "left", "right"];
+        let position = names.iter().position(|name| *name == action).expect("a move");
+        successors(&system, &state, system.actions[position]).into_iter().collect::<Vec<_>>()
+    };
+    // A move, a bump, a crash and a choice; and where it crashed nothing more.
+    assert_eq!(go(at(0, 0, false, 2), "up"), [at(0, 1, false, 1)]);
+    assert_eq!(go(at(0, 0, false, 2), "right"), [at(0, 0, false, 0)]);
+    assert_eq!(go(at(0, 1, false, 1), "up"), [at(0, 1, true, 0)]);
+    assert_eq!(go(at(0, 1, false, 0), "right"), [at(1, 1, false, 0), at(1, 1, false, 2)]);
+    assert_eq!(go(at(0, 1, true, 1), "up"), [at(0, 1, true, 1)]);
+    assert_eq!(go(at(0, 1, false, 2), "down"), [at(0, 0, false, 2)]);
+}
+
+#[test]
+fn letters_of_a_large_map_are_told_apart() {
+    let rows: Vec<String> =
+        (0..600).map(|y| (0..700).map(|x| ["a", "b", "c"][(x * 7 + y * y) % 3]).collect()).collect();
+    let text = "system M = grid(\"m.txt\") {
+        legend 'a' = sand; legend 'b' = road; legend 'c' = mud;
+        state fuel: 0..9;
+        also on * when road { fuel' = fuel - 1; }
+        also on up | down when sand { fuel' = fuel - 2; }
+        also on * when mud { fuel' = fuel - 3; }
+        also on left | right when sand & fuel > 1 { fuel' = fuel - 2; }
+    }";
+    let problem = super::ok_with(text, &[("m.txt", &rows.join("\n"))]).problem;
+    assert_eq!(problem.systems.first().expect("a system").also.len(), 4);
+}

@@ -1,0 +1,68 @@
+//! What is to be as small as possible: a constant, costs that the command line says, or those that objectives do.
+
+use crate::args;
+use crate::failure::{Failure, Result};
+use crate::files::read_source;
+use crate::load::{Consts, Loaded};
+use crate::output::Output;
+use crate::parameter::Parameter;
+use crate::report::WIDTH;
+use hyperplan_problem::lower::targets;
+use hyperplan_problem::{Objective, Target};
+use hyperplan_syntax::{Diagnostic, SourceMap, ast, parse_exprs, render};
+use std::time::Instant;
+
+pub(crate) enum Wish<'a> {
+    /// What the objective says.
+    OfObjective,
+    /// A constant.
+    Constant(Box<Parameter<'a>>),
+    /// Costs, with the constants of the file.
+    Costs {
+        exprs: Vec<ast::Expr>,
+        consts: Consts,
+        /// With the option's text only.
+        sources: SourceMap,
+    },
+}
+
+impl<'a> Wish<'a> {
+    /// What the arguments ask for, and the problem.
+    pub(crate) fn read(args: &'a args::Solve, out: &Output) -> Result<(Wish<'a>, Loaded)> {
+        let text = match &args.minimize {
+            None => return Ok((Wish::OfObjective, Loaded::read(&args.problem, out)?)),
+            Some(args::Wish::Constant(wanted)) => {
+                let (parameter, loaded) = Parameter::read(&args.problem, wanted, out)?;
+                return Ok((Wish::Constant(Box::new(parameter)), loaded));
+            }
+            Some(args::Wish::Costs(text)) => text,
+        };
+        let mut sources = SourceMap::new();
+        let source = sources.add("--minimize", text.as_str());
+        let (exprs, errors) = parse_exprs(source, text);
+        if !errors.is_empty() {
+            return Err(failure(&sources, &errors));
+        }
+        let start = Instant::now();
+        let file = read_source(&args.problem.file)?;
+        let (loaded, consts) = Loaded::with_consts(&args.problem, &file, start, out)?;
+        Ok((Wish::Costs { exprs, consts, sources }, loaded))
+    }
+
+    /// What is to be as small as possible of an objective; nothing where a constant is.
+    pub(crate) fn targets(&self, loaded: &Loaded, objective: &Objective) -> Result<Vec<Target>> {
+        match self {
+            Wish::OfObjective => Ok(objective.minimize.clone()),
+            Wish::Constant(_) => Ok(Vec::new()),
+            Wish::Costs { exprs, consts, sources } => {
+                targets(&loaded.problem, objective, consts, exprs).map_err(|errors| failure(sources, &errors))
+            }
+        }
+    }
+}
+
+fn failure(sources: &SourceMap, errors: &[Diagnostic]) -> Failure {
+    let details = render(sources, errors, false, WIDTH);
+    let failed = Failure::input("what `--minimize` says cannot be understood");
+    Failure { details: details.trim_end().to_owned(), ..failed }
+}
