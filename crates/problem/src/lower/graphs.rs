@@ -38,7 +38,7 @@ const MAX_ATTRIBUTES: usize = 64;
 const ENDS: [&str; 3] = ["from", "action", "to"];
 
 /// What a graph file may say.
-const MEMBERS: [&str; 5] = ["states", "actions", "initial", "transitions", "labels"];
+const MEMBERS: [&str; 6] = ["states", "actions", "initial", "transitions", "labels", "coordinates"];
 
 /// The system that a graph file describes, as far as it can be read.
 pub(super) fn file(ast: &ast::System, file: &Text, env: &mut Env) -> Base {
@@ -89,6 +89,11 @@ fn other(path: &str) -> Option<(&'static str, &'static str)> {
         "a graph in DOT",
         "networkx turns it into JSON: `json.dump(node_link_data(nx_pydot.read_dot(FILE)), ...)`",
     ))
+}
+
+/// Whether numbers of transitions can be called so.
+fn is_attribute(name: &str) -> bool {
+    is_name(name) && name != "node" && name != "action"
 }
 
 struct Reader<'a, 'e> {
@@ -163,6 +168,10 @@ impl Reader<'_, '_> {
             Some(labels) if states.is_some() => self.labels(*labels, known),
             _ => Vec::new(),
         };
+        let coordinates = match members.get("coordinates") {
+            Some(places) if states.is_some() => self.coordinates(*places, known),
+            _ => None,
+        };
         self.end(root.start());
         let states = states?;
         let count = states.len();
@@ -175,6 +184,7 @@ impl Reader<'_, '_> {
             edges: Some(Edges::with_attributes(NODE, count, &names, edges.edges)),
             labels,
             init,
+            coordinates: coordinates.map(Into::into),
             poisoned: self.errors > 0,
             ..Base::default()
         })
@@ -395,7 +405,7 @@ impl Reader<'_, '_> {
             self.error(Diagnostic::error("bad-graph", name.span(), message).with_help(help));
             None
         };
-        if !is_name(&text) || text == "node" || text == "action" {
+        if !is_attribute(&text) {
             return refuse(
                 format!("{text:?} cannot be the name of an attribute"),
                 "names consist of the letters a-z and A-Z, digits, and `_`, are no keywords, and not `node` or `action`",
@@ -447,6 +457,26 @@ impl Reader<'_, '_> {
                 );
             }
         }
+    }
+
+    /// `{"n1": [0.5, 2]}`: where states lie, in an order of their own. Every state has to lie somewhere.
+    fn coordinates(&mut self, piece: Piece<'_>, states: &Table) -> Option<Vec<(f64, f64)>> {
+        let mut places = vec![None; states.len()];
+        for (name, value) in self.object(piece, "`coordinates`")? {
+            let Some(state) = self.known(name, states, "state") else { continue };
+            let place = node_link::point(value).filter(|(x, y)| x.is_finite() && y.is_finite());
+            if place.is_none() {
+                self.bad(value.span(), format!("a place is `[X, Y]`, two numbers, not {}", value.describe()));
+            }
+            if places[state as usize].replace(place.unwrap_or_default()).is_some() {
+                self.bad(name.span(), "a state that lies somewhere already");
+            }
+        }
+        if let Some(missing) = places.iter().position(Option::is_none) {
+            let name = states.get_index(missing).map_or("", |state| state.0.as_str());
+            self.bad(piece.start(), format!("the state `{name}` has no coordinates, though others have"));
+        }
+        places.into_iter().collect()
     }
 
     fn initial(&mut self, piece: Piece<'_>, states: &Table) -> Expr<Leaf> {

@@ -2,7 +2,7 @@
 
 use super::super::json::{Kind, Piece};
 use super::Reader;
-use super::node_link::{labels, member, point};
+use super::node_link::{labels, member, point, said};
 use super::roadmap::Roadmap;
 
 /// Whether an object is a collection of features.
@@ -86,5 +86,8 @@ fn edge(reader: &mut Reader<'_, '_>, map: &mut Roadmap, feature: Piece<'_>, prop
             None => return,
         },
     };
-    map.edge(reader, ((&from.0, from.1), (&to.0, to.1)), id, true);
+    let metadata = member(properties, "metadata").filter(|metadata| metadata.kind() == Kind::Object);
+    let mut all = said(properties, &["id", "startid", "endid"]);
+    all.extend(said(&metadata.and_then(Piece::object).unwrap_or_default(), &[]));
+    map.edge(reader, ((&from.0, from.1), (&to.0, to.1)), id, true, &all);
 }

@@ -58,7 +58,9 @@ pub(super) fn read(reader: &mut Reader<'_, '_>, source: SourceId, text: &str) ->
             },
         };
         let directed = edge.attribute("directed").map_or(directed, |directed| directed == "true");
-        map.edge(reader, ((from, at), (to, at)), id, directed);
+        let said = data(edge, &keys).into_iter().filter(|(key, _)| key.is_number);
+        let said: Vec<_> = said.map(|(key, text)| (key.name.to_owned(), text, at)).collect();
+        map.edge(reader, ((from, at), (to, at)), id, directed, &said);
     }
     map
 }
@@ -67,12 +69,15 @@ pub(super) fn read(reader: &mut Reader<'_, '_>, source: SourceId, text: &str) ->
 struct Key<'t> {
     name: &'t str,
     is_boolean: bool,
+    is_number: bool,
 }
 
 impl<'t> Key<'t> {
     fn of(key: Node<'t, '_>) -> Key<'t> {
         let name = key.attribute("attr.name").or_else(|| key.attribute("id")).unwrap_or_default();
-        Key { name, is_boolean: key.attribute("attr.type") == Some("boolean") }
+        let kind = key.attribute("attr.type").unwrap_or_default();
+        let is_number = name != "id" && ["int", "long", "float", "double"].contains(&kind);
+        Key { name, is_boolean: kind == "boolean", is_number }
     }
 }
 

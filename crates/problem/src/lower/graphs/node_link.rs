@@ -3,7 +3,7 @@
 use super::super::json::{Kind, Piece};
 use super::Reader;
 use super::roadmap::Roadmap;
-use hyperplan_syntax::Diagnostic;
+use hyperplan_syntax::{Diagnostic, Span};
 
 /// What the list of edges is called, before networkx 3.4 and since.
 pub(super) const EDGES: [&str; 2] = ["links", "edges"];
@@ -55,9 +55,17 @@ pub(super) fn read(reader: &mut Reader<'_, '_>, members: &[(Piece<'_>, Piece<'_>
                 None => continue,
             },
         };
-        map.edge(reader, ((&from.0, from.1), (&to.0, to.1)), id, directed);
+        let said = said(&properties, &["source", "target", "id", "key"]);
+        map.edge(reader, ((&from.0, from.1), (&to.0, to.1)), id, directed, &said);
     }
     map
+}
+
+/// The properties of an edge that are numbers, but for some.
+pub(super) fn said<'t>(properties: &[(Piece<'t>, Piece<'t>)], but: &[&str]) -> Vec<(String, &'t str, Span)> {
+    let numbers = properties.iter().filter(|(_, value)| value.kind() == Kind::Number);
+    let named = numbers.filter_map(|(key, value)| Some((key.text()?, value.raw(), key.span())));
+    named.filter(|(name, ..)| !but.contains(&name.as_str())).collect()
 }
 
 fn one_node(reader: &mut Reader<'_, '_>, map: &mut Roadmap, node: Piece<'_>) {

@@ -2,6 +2,7 @@
 
 use super::interpreter::labelled;
 use super::{lowered_with, messages, ok_with};
+use crate::ids::AttributeId;
 use crate::{Overrides, Type, Value};
 
 /// The transitions of a graph file as `FROM ACTION TO`, in order.
@@ -182,4 +183,37 @@ fn xml_that_is_meant_to_hurt() {
     assert!(!said("g.graphml", lol).is_empty());
     let nested = format!("{{\"nodes\": {}{}}}", "[".repeat(100_000), "]".repeat(100_000));
     assert!(!said("g.json", &nested).is_empty());
+}
+
+#[test]
+fn states_of_our_own_graphs_lie_somewhere() {
+    let text =
+        r#"{"states": ["a", 7], "actions": ["go"], "transitions": [["a", "go", 7]], "coordinates": PLACES}"#;
+    let with = |places: &str| text.replace("PLACES", places);
+    let lowered =
+        ok_with("system W = graph(\"g.json\");", &[("g.json", &with(r#"{"7": [0.5, 2], "a": [0, -1]}"#))]);
+    let system = lowered.problem.systems.first().expect("a system");
+    assert_eq!(system.coordinates.as_deref(), Some(&[(0.0, -1.0), (0.5, 2.0)][..]));
+    for (places, words) in [
+        (r#"{"a": [0, 1]}"#, "the state `7` has no coordinates, though others have"),
+        (r#"{"a": [0, 1], "7": [1]}"#, "a place is `[X, Y]`, two numbers, not a list"),
+        (r#"{"a": [0, 1], "b": [1, 1]}"#, "no state `b` in the graph"),
+    ] {
+        let found = said("g.json", &with(places));
+        assert!(found.iter().any(|said| said.contains(words)), "{places}: {found:?}");
+    }
+}
+
+#[test]
+fn integers_of_edges_are_attributes() {
+    let text = r#"{"directed": true, "nodes": [{"id": "a"}, {"id": "b"}],
+        "links": [{"source": "a", "target": "b", "length": 3, "weight": 1.5, "lanes": 2.0},
+                  {"source": "b", "target": "a", "length": 4}]}"#;
+    let lowered = ok_with("system W = graph(\"g.json\");", &[("g.json", text)]);
+    let system = lowered.problem.systems.first().expect("a system");
+    let edges = system.edges.as_ref().expect("a graph");
+    let names: Vec<&str> = edges.attributes().iter().map(|attribute| attribute.name.as_str()).collect();
+    assert_eq!(names, ["length", "lanes"]);
+    let of = |from: u32| edges.numbered(from).map(|(at, _)| [0, 1].map(|a| edges.number(at, AttributeId(a))));
+    assert_eq!((of(0).collect::<Vec<_>>(), of(1).collect::<Vec<_>>()), (vec![[3, 2]], vec![[4, 0]]));
 }
