@@ -188,7 +188,7 @@ pub(crate) struct Solve {
     pub(crate) memory: Option<u64>,
     /// Finds the least value of a constant, such as T, for which the objective is realizable, and proves that
     /// smaller ones are not; the range is 0 (or the least value that the file allows) up to the constant's value.
-    /// Or finds the cheapest strategy: 'cost fuel[p]', in place of what the objective says after `minimize`
+    /// Or finds the cheapest strategy: `cost fuel[p]`, in place of what the objective says after `minimize`
     #[arg(long, value_name = "CONST[=LO..HI]|EXPR", value_parser = wish)]
     pub(crate) minimize: Option<Wish>,
     /// Draws the map with the paths into an .svg (or .txt) file
