@@ -13,11 +13,16 @@ pub struct Edge {
     pub to: u32,
 }
 
+/// The attribute that transitions have where it is known where values lie.
+const DISTANCE: &str = "distance";
+
 /// A number that transitions carry.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Attribute {
     /// Its name.
     pub name: String,
+    /// It is not in the file, but follows from where the ends of transitions lie: what the problem calls so comes first.
+    pub derived: bool,
     /// The number of each transition, by its position in the table.
     numbers: Arc<[i64]>,
 }
@@ -66,11 +71,32 @@ impl Edges {
         }
         let attribute = |(at, name): (usize, &String)| Attribute {
             name: name.clone(),
+            derived: false,
             numbers: transitions.iter().map(|(.., own)| own.get(at).copied().unwrap_or(0)).collect(),
         };
         let attributes: TiVec<AttributeId, Attribute> = names.iter().enumerate().map(attribute).collect();
         let list = transitions.iter().map(|(_, edge, _)| *edge).collect();
         Edges { var, starts: starts.into(), list, attributes: attributes.into_boxed_slice().into() }
+    }
+
+    /// The same with one more attribute, `distance`, unless the file has it: how far the ends of each transition are from each
+    /// other, in thousandths of the unit in which values lie at these places, rounded.
+    #[must_use]
+    pub fn with_distances(mut self, places: &[(f64, f64)]) -> Self {
+        if self.attributes.iter().any(|attribute| attribute.name == DISTANCE) {
+            return self;
+        }
+        let place = |value: u32| places.get(value as usize).copied().unwrap_or_default();
+        let distance = |(from, edge): (u32, Edge)| {
+            let ((x, y), (u, v)) = (place(from), place(edge.to));
+            // Places are within 10^9 units, so this is far from the limits of either type.
+            (1000.0 * (u - x).hypot(v - y)).round() as i64
+        };
+        let numbers = self.iter().map(distance).collect();
+        let mut attributes: Vec<Attribute> = self.attributes.iter().cloned().collect();
+        attributes.push(Attribute { name: DISTANCE.to_owned(), derived: true, numbers });
+        self.attributes = TiVec::from(attributes).into_boxed_slice().into();
+        self
     }
 
     /// What numbers transitions carry.

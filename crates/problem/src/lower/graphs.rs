@@ -176,12 +176,16 @@ impl Reader<'_, '_> {
         let states = states?;
         let count = states.len();
         let names: Vec<String> = edges.attributes.into_keys().collect();
+        let mut edges = Edges::with_attributes(NODE, count, &names, edges.edges);
+        if let Some(places) = &coordinates {
+            edges = edges.with_distances(places);
+        }
         let node =
             Var { name: "node".into(), ty: Type::Enum(states.into_keys().collect()), sums: None, span };
         Some(Base {
             vars: [node].into_iter().collect(),
             actions: ids,
-            edges: Some(Edges::with_attributes(NODE, count, &names, edges.edges)),
+            edges: Some(edges),
             labels,
             init,
             coordinates: coordinates.map(Into::into),
@@ -464,9 +468,12 @@ impl Reader<'_, '_> {
         let mut places = vec![None; states.len()];
         for (name, value) in self.object(piece, "`coordinates`")? {
             let Some(state) = self.known(name, states, "state") else { continue };
-            let place = node_link::point(value).filter(|(x, y)| x.is_finite() && y.is_finite());
+            let place =
+                node_link::point(value).filter(|(x, y)| x.abs().max(y.abs()) <= roadmap::MAX_DISTANCE);
             if place.is_none() {
-                self.bad(value.span(), format!("a place is `[X, Y]`, two numbers, not {}", value.describe()));
+                let message =
+                    format!("a place is `[X, Y]`, two numbers within 10^9, not {}", value.describe());
+                self.bad(value.span(), message);
             }
             if places[state as usize].replace(place.unwrap_or_default()).is_some() {
                 self.bad(name.span(), "a state that lies somewhere already");

@@ -8,6 +8,7 @@ use super::expr::Context;
 use super::limits::Limits;
 use super::state::StateContext;
 use super::typed::{self as make, Bounds, Typed};
+use crate::edges::Attribute;
 use crate::expr::{Expr, StepLeaf};
 use crate::ids::AttributeId;
 use crate::system::System;
@@ -25,7 +26,12 @@ impl StepContext<'_, '_> {
     /// The number of a graph's transitions that has a name.
     fn attribute(&self, name: &str) -> Option<Typed<StepLeaf>> {
         let edges = self.system.edges.as_ref()?;
-        let at = edges.attributes().iter().position(|attribute| attribute.name == name)?;
+        let hidden = |derived: bool| {
+            let StateContext { names, consts, .. } = &*self.state;
+            derived && (names.contains_key(name) || consts.get(name).is_some())
+        };
+        let is_meant = |a: &Attribute| a.name == name && !hidden(a.derived);
+        let at = edges.attributes().iter().position(is_meant)?;
         let id = AttributeId::from(at);
         let (lo, hi) = edges.numbers_between(id);
         Some(Typed::Int(Expr::Leaf(StepLeaf::Attribute(id)), Some(Bounds { lo, hi })))

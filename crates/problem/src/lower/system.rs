@@ -110,7 +110,7 @@ fn declare(cx: &mut StateContext, name: &Ident, leaf: Leaf) -> bool {
 
 /// Refuses variables, labels and constants that are called as the numbers of a graph's transitions are.
 fn demand_new_names(cx: &mut StateContext, edges: Option<&Edges>) {
-    for attribute in edges.iter().flat_map(|edges| edges.attributes()) {
+    for attribute in edges.iter().flat_map(|edges| edges.attributes()).filter(|a| !a.derived) {
         let name = attribute.name.as_str();
         let constant = || cx.consts.get(name).map(|constant| constant.span);
         if let Some(place) = cx.names.get(name).map(|(_, place)| *place).or_else(constant) {

@@ -16,7 +16,7 @@ use rustc_hash::FxBuildHasher;
 const GO: &str = "go_";
 
 /// Most units from the origin, for a place to be one.
-const MAX_DISTANCE: f64 = 1e9;
+pub(super) const MAX_DISTANCE: f64 = 1e9;
 
 /// A graph while it is read.
 #[derive(Debug, Default)]
@@ -158,9 +158,12 @@ impl Roadmap {
             return None;
         }
         let names: Vec<String> = listed.attributes.into_keys().collect();
-        let edges = Edges::with_attributes(NODE, self.nodes.len(), &names, listed.edges);
         let label = |(name, (nodes, span))| Label { name, expr: one_of(nodes), nested: false, span };
         let places: Option<Vec<(f64, f64)>> = self.places.into_iter().collect();
+        let mut edges = Edges::with_attributes(NODE, self.nodes.len(), &names, listed.edges);
+        if let Some(places) = &places {
+            edges = edges.with_distances(places);
+        }
         let node =
             Var { name: "node".into(), ty: Type::Enum(self.nodes.into_keys().collect()), sums: None, span };
         Some(Base {

@@ -194,9 +194,16 @@ fn states_of_our_own_graphs_lie_somewhere() {
         ok_with("system W = graph(\"g.json\");", &[("g.json", &with(r#"{"7": [0.5, 2], "a": [0, -1]}"#))]);
     let system = lowered.problem.systems.first().expect("a system");
     assert_eq!(system.coordinates.as_deref(), Some(&[(0.0, -1.0), (0.5, 2.0)][..]));
+    let edges = system.edges.as_ref().expect("a graph");
+    assert_eq!(edges.numbered(0).map(|(at, _)| edges.number(at, AttributeId(0))).collect::<Vec<_>>(), [3041]);
+    // What is called so in the problem comes first.
+    let text = "system W = graph(\"g.json\") { label distance = true; cost c = if distance then 2 else 3; }";
+    ok_with(text, &[("g.json", &with(r#"{"7": [0.5, 2], "a": [0, -1]}"#))]);
+    let text = "system W = graph(\"g.json\") { cost c = distance; }";
+    ok_with(text, &[("g.json", &with(r#"{"7": [0.5, 2], "a": [0, -1]}"#))]);
     for (places, words) in [
         (r#"{"a": [0, 1]}"#, "the state `7` has no coordinates, though others have"),
-        (r#"{"a": [0, 1], "7": [1]}"#, "a place is `[X, Y]`, two numbers, not a list"),
+        (r#"{"a": [0, 1], "7": [1]}"#, "a place is `[X, Y]`, two numbers within 10^9, not a list"),
         (r#"{"a": [0, 1], "b": [1, 1]}"#, "no state `b` in the graph"),
     ] {
         let found = said("g.json", &with(places));
