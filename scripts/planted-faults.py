@@ -47,7 +47,6 @@ def main() -> None:
             print(f"{name}: {path.relative_to(ROOT)}:{line}")
         return
     chosen = [fault for fault in faults if not arguments.names or fault["name"] in arguments.names]
-    chosen = [fault for fault in chosen if is_possible(fault)]
     if arguments.sample is not None:
         chosen = random.Random(arguments.seed).sample(chosen, min(arguments.sample, len(chosen)))
     refresh()
@@ -62,17 +61,6 @@ def main() -> None:
     print(f"{len(chosen) - len(missed)} of {len(chosen)} faults are caught")
     if missed:
         sys.exit(f"missed: {', '.join(missed)}")
-
-
-def is_possible(fault: dict) -> bool:
-    """Whether the programs that it takes to notice it are there."""
-    program = fault.get("needs")
-    there = program is None or shutil.which(program) is not None
-    if not there:
-        if os.environ.get("HYPERPLAN_REQUIRE_SOLVERS") == "1":
-            sys.exit(f"{fault['name']}: {program} is missing")
-        print(f"{fault['name']}: {program} is missing: skipped")
-    return there
 
 
 def plant(fault: dict, sources: dict) -> tuple | str:

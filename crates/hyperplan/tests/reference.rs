@@ -250,6 +250,14 @@ fn quiet(folder: &Path, arguments: &[&str]) -> Result<String, String> {
     }
 }
 
+/// The words of a command line; what stands in single quotes is one.
+fn words(line: &str) -> Vec<&str> {
+    let parts = line.split('\'').enumerate();
+    parts
+        .flat_map(|(at, part)| if at % 2 == 1 { vec![part] } else { part.split_whitespace().collect() })
+        .collect()
+}
+
 /// What the commands of a block print.
 fn prints(folder: &Path, text: &str) -> Result<(), String> {
     for part in format!("\n{text}").split("\n$ ").skip(1) {
@@ -258,7 +266,7 @@ fn prints(folder: &Path, text: &str) -> Result<(), String> {
             Some((line, lines)) => (line, lines.parse().map_err(|_| format!("no number in `{line}`"))?),
             None => (line, usize::MAX),
         };
-        let words: Vec<&str> = line.split_whitespace().collect();
+        let words = words(line);
         let Some(("hyperplan", arguments)) = words.split_first().map(|(first, rest)| (*first, rest)) else {
             return Err(format!("`{line}` is not hyperplan"));
         };
