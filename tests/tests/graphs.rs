@@ -99,8 +99,10 @@ fn loaded(random: &model::Problem, numbers: &mut Random) -> (Problem, Problem) {
         .edges()
         .iter()
         .zip(&number)
-        .map(|((from, action, to), n)| {
-            let number = if *n == 0 { String::new() } else { format!(", \"n\": {n}") };
+        .enumerate()
+        .map(|(at, ((from, action, to), n))| {
+            // The first has it in any case, so that there is such an attribute.
+            let number = if *n == 0 && at > 0 { String::new() } else { format!(", \"n\": {n}") };
             let action = system.actions[*action];
             format!("{{\"from\": \"v{from}\", \"action\": {action:?}, \"to\": \"v{to}\"{number}}}")
         })
