@@ -6,13 +6,13 @@
 //! answer was proved too low, be it one by one or by a larger one. Of several targets the first counts most: what it came to
 //! is a bound of its own while the next is looked at. What a strategy costs is always what the checker says.
 
-use crate::config::{Config, Outcome, Quantifiers, Seconds, Verdict};
+use crate::config::{Config, Outcome, Quantifiers, Verdict};
 use crate::fact::{Error, Reason};
-use crate::minimize::Steps;
+use crate::minimize::{Spent, Steps};
 use crate::solve::solve_sharing;
 use hyperplan_encode::{self as encode, Encoder, Goal, Graphs};
 use hyperplan_problem::{Mode, Objective, PathId, Problem, Strategy, Target, bounded, extended};
-use hyperplan_solver::{QuerySize, Unknown};
+use hyperplan_solver::Unknown;
 
 /// What is known of the least values.
 #[derive(Debug)]
@@ -209,27 +209,5 @@ impl Search<'_> {
             }
         }
         Ok(outcome)
-    }
-}
-
-/// What all searches took together.
-#[derive(Default)]
-struct Spent {
-    seconds: Seconds,
-    rounds: u32,
-    largest: QuerySize,
-}
-
-impl Spent {
-    fn add(&mut self, outcome: &Outcome) {
-        self.seconds.encode += outcome.seconds.encode;
-        self.seconds.solve += outcome.seconds.solve;
-        self.seconds.verify += outcome.seconds.verify;
-        self.rounds += outcome.iterations;
-        self.largest = std::mem::take(&mut self.largest).max(outcome.size.clone());
-    }
-
-    fn told(self, outcome: Outcome) -> Outcome {
-        Outcome { seconds: self.seconds, iterations: self.rounds, size: self.largest, ..outcome }
     }
 }

@@ -79,18 +79,8 @@ pub fn minimize<E>(
     let parts = conjuncts(&find(&problem, objective, low)?.formula);
     let chain = Chain { end: low, whole: !parts.is_empty(), parts, problem };
     let graphs = Graphs::default();
-    let mut minimizer = Minimizer {
-        objective,
-        problem_of,
-        config,
-        graphs,
-        chain,
-        low,
-        high,
-        seconds: Seconds::default(),
-        rounds: 0,
-        largest: QuerySize::default(),
-    };
+    let mut minimizer =
+        Minimizer { objective, problem_of, config, graphs, chain, low, high, spent: Spent::default() };
     minimizer.refute()?;
     minimizer.run()
 }
@@ -120,9 +110,29 @@ struct Minimizer<'a, E> {
     /// Smaller values are unrealizable.
     low: i64,
     high: i64,
-    seconds: Seconds,
+    spent: Spent,
+}
+
+/// What all searches took together.
+#[derive(Default)]
+pub(crate) struct Spent {
+    pub(crate) seconds: Seconds,
     rounds: u32,
     largest: QuerySize,
+}
+
+impl Spent {
+    pub(crate) fn add(&mut self, outcome: &Outcome) {
+        self.seconds.encode += outcome.seconds.encode;
+        self.seconds.solve += outcome.seconds.solve;
+        self.seconds.verify += outcome.seconds.verify;
+        self.rounds += outcome.iterations;
+        self.largest = std::mem::take(&mut self.largest).max(outcome.size.clone());
+    }
+
+    pub(crate) fn told(self, outcome: Outcome) -> Outcome {
+        Outcome { seconds: self.seconds, iterations: self.rounds, size: self.largest, ..outcome }
+    }
 }
 
 /// An answer for a value.
@@ -211,7 +221,7 @@ impl<E> Minimizer<'_, E> {
     fn is_hopeless(&mut self, problem: &Problem, objective: &Objective) -> bool {
         let start = Instant::now();
         let hopeless = hopeless(problem, objective, self.config, &self.graphs);
-        self.seconds.encode += start.elapsed().as_secs_f64();
+        self.spent.seconds.encode += start.elapsed().as_secs_f64();
         // What cannot be settled here is left to the solver.
         hopeless.unwrap_or(false)
     }
@@ -280,19 +290,13 @@ impl<E> Minimizer<'_, E> {
         }
         let outcome = solve_sharing(&problem, objective, &config, &self.graphs)
             .map_err(|error| MinimizeError::Solve { value, error })?;
-        self.seconds.encode += outcome.seconds.encode;
-        self.seconds.solve += outcome.seconds.solve;
-        self.seconds.verify += outcome.seconds.verify;
-        self.rounds += outcome.iterations;
-        self.largest = std::mem::take(&mut self.largest).max(outcome.size.clone());
+        self.spent.add(&outcome);
         Ok(Solved { value, problem, outcome })
     }
 
     fn conclude(self, solved: Solved, undecided: Option<Reason>) -> Least {
-        let Solved { value, problem, mut outcome } = solved;
-        outcome.seconds = self.seconds;
-        outcome.iterations = self.rounds;
-        outcome.size = self.largest;
+        let Solved { value, problem, outcome } = solved;
+        let outcome = self.spent.told(outcome);
         Least { value, problem, outcome, proved: self.low, undecided }
     }
 }

@@ -6,9 +6,10 @@
 //! paths do not know, as their choice may not depend on the others. It has to be empty in the end, as a chance is gone once
 //! nothing more can be asked for. A chance that becomes `false` loses.
 //!
-//! Two searches are made of beliefs. The first keeps only the most promising at each time ([`beam`]), which finds a strategy soon
-//! where there are many. The second is depth first, with what was learnt from failing: for a node, the chances by which each of its moves failed,
-//! traced back, are a *nogood*. A belief that includes a nogood of the same leading states at the same time need not be
+//! Before all else the other player is given a turn: if it wins by answering step by step, the leading paths lose
+//! ([`response`]). Then two searches are made of beliefs. The first keeps only the most promising at each time ([`beam`]), which
+//! finds a strategy soon where there are many. The second is depth first, with what was learnt from failing: for a node, the
+//! chances by which each of its moves failed, traced back, are a *nogood*. A belief that includes a nogood of the same leading states at the same time need not be
 //! searched. This is conflict-directed backjumping with learning (Dechter), the constraint being that no chance be missed.
 //!
 //! Soundness. Chances are dropped where the goal's rest is `true`, where the other player's path is none (it cannot go on as
@@ -58,7 +59,7 @@ impl<R> Belief<R> {
 }
 
 /// Searches for runs of the leading block that meet the goal whatever the other block, the last, does. `budget` is in chances
-/// that each search may look at: the beams, and that by depth.
+/// that each search may look at: the beams, and that by depth; the other player's answers get a quarter of it.
 ///
 /// Runs that are hardly longer than the shortest leave the other player least to do, so depth first they are tried first.
 ///
