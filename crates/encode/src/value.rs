@@ -202,16 +202,39 @@ pub(crate) fn translate<L>(terms: &mut Terms, expr: &Expr<L>, leaves: &mut impl 
                 }
             }
         }
-        Expr::If(c, a, b) => {
-            let c = translate(terms, c, leaves).truth();
-            let (a, b) = (translate(terms, a, leaves), translate(terms, b, leaves));
-            choose(terms, c, a, b)
+        Expr::If(branches, last) => {
+            let branches: Vec<(Term, Val)> = branches
+                .iter()
+                .map(|(c, a)| (translate(terms, c, leaves).truth(), translate(terms, a, leaves)))
+                .collect();
+            let last = translate(terms, last, leaves);
+            choose_first(terms, branches, last)
         }
         Expr::Member(es, set) => {
             let tuple: Vec<Val> = es.iter().map(|e| translate(terms, e, leaves)).collect();
             Val::Bool(member(terms, &tuple, set))
         }
     }
+}
+
+/// The value beside the first condition that holds, or the last.
+fn choose_first(terms: &mut Terms, branches: Vec<(Term, Val)>, last: Val) -> Val {
+    let listed = |value: &Val| matches!(value, Val::Cases(_));
+    if !branches.iter().all(|(_, value)| listed(value)) || !listed(&last) {
+        return branches.into_iter().rev().fold(last, |rest, (c, a)| choose(terms, c, a, rest));
+    }
+    // All cases at once: going through the rest of the chain for each branch would take the square of its length.
+    let (mut all, mut before) = (Vec::new(), Term::FALSE);
+    for (c, value) in branches.into_iter().chain([(Term::TRUE, last)]) {
+        let here = terms.and2(c, !before);
+        if let Val::Cases(cases) = value {
+            for (value, when) in cases {
+                all.push((value, terms.and2(when, here)));
+            }
+        }
+        before = terms.or(&[before, c]);
+    }
+    merge(terms, all.into_iter())
 }
 
 /// `if c then a else b`.

@@ -134,10 +134,7 @@ impl Names<Leaf> for System {
     }
 
     fn ty(&self, leaf: &Leaf) -> Option<&Type> {
-        match leaf {
-            Leaf::Var(id) => Some(&self.vars[*id].ty),
-            Leaf::Label(_) => None,
-        }
+        Some(self.leaf_type(*leaf))
     }
 }
 
@@ -265,13 +262,15 @@ impl<N> Printer<'_, N> {
             Expr::ToReal(a) => p.expr(a, place, ty),
             Expr::Div(a, c) => p.operand("", a, &format!(" div {c}")),
             Expr::Mod(a, c) => p.operand("", a, &format!(" % {c}")),
-            Expr::If(c, a, b) => {
-                p.out += "if ";
-                p.expr(c, 0, None);
-                p.out += " then ";
-                p.expr(a, 0, ty);
-                p.out += " else ";
-                p.expr(b, 0, ty);
+            Expr::If(branches, last) => {
+                for (c, a) in branches {
+                    p.out += "if ";
+                    p.expr(c, 0, None);
+                    p.out += " then ";
+                    p.expr(a, 0, ty);
+                    p.out += " else ";
+                }
+                p.expr(last, 0, ty);
             }
             Expr::Member(es, set) => {
                 let types: Vec<Option<&Type>> = es.iter().map(|e| enumeration(names, e)).collect();
@@ -461,8 +460,11 @@ fn enumeration<'a, L>(names: &'a impl Names<L>, e: &Expr<L>) -> Option<&'a Type>
     loop {
         match at {
             Expr::Leaf(leaf) => return names.ty(leaf).filter(|ty| matches!(ty, Type::Enum(_))),
-            // Either branch may be a constant; the first that is none says it.
-            Expr::If(_, a, b) => at = if matches!(**a, Expr::Const(_)) { b } else { a },
+            // Values may be constants; the first that is none says it.
+            Expr::If(branches, last) => {
+                let values = branches.iter().map(|(_, a)| a);
+                at = values.into_iter().find(|a| !matches!(a, Expr::Const(_))).unwrap_or(last);
+            }
             _ => return None,
         }
     }

@@ -116,6 +116,15 @@ pub enum StepLeaf {
     Attribute(AttributeId),
 }
 
+/// What an expression over the states before and after a step reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum TransLeaf {
+    /// In the state before it.
+    Before(Leaf),
+    /// In the state after it.
+    After(Leaf),
+}
+
 /// What an atom of an objective reads, now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PathLeaf {
@@ -228,8 +237,9 @@ pub enum Expr<L> {
     Div(Box<Expr<L>>, i64),
     /// Remainder of [`Expr::Div`], never negative (SMT-LIB `mod`).
     Mod(Box<Expr<L>>, i64),
-    /// Choice between two expressions of one type; the first is Boolean.
-    If(Box<Expr<L>>, Box<Expr<L>>, Box<Expr<L>>),
+    /// The value beside the first condition that holds, the last where none does; all values are of one type. A chain
+    /// is flat, however long it is: the last value is never such a choice itself.
+    If(Vec<(Expr<L>, Expr<L>)>, Box<Expr<L>>),
     /// Membership of a tuple of integers and enumeration values.
     Member(Vec<Expr<L>>, Arc<TupleSet>),
 }
@@ -252,6 +262,29 @@ impl<L> Expr<L> {
         matches!(self, Expr::Const(Value::Bool(false)))
     }
 
+    /// The value beside the first condition that holds, or the last one; all of one type.
+    #[must_use]
+    pub fn choice(branches: impl IntoIterator<Item = (Expr<L>, Expr<L>)>, mut last: Expr<L>) -> Expr<L> {
+        let mut kept = Vec::new();
+        for (condition, value) in branches {
+            if condition.is_true() {
+                last = value;
+                break;
+            }
+            if !condition.is_false() {
+                kept.push((condition, value));
+            }
+        }
+        match last {
+            last if kept.is_empty() => last,
+            Expr::If(more, end) => {
+                kept.extend(more);
+                Expr::If(kept, end)
+            }
+            last => Expr::If(kept, Box::new(last)),
+        }
+    }
+
     /// Direct subexpressions.
     #[must_use]
     pub fn children(&self) -> Vec<&Expr<L>> {
@@ -265,7 +298,7 @@ impl<L> Expr<L> {
             | Expr::Mod(a, _) => vec![a],
             Expr::And(es) | Expr::Or(es) | Expr::Add(es) | Expr::Member(es, _) => es.iter().collect(),
             Expr::Iff(a, b) | Expr::Compare(_, a, b) => vec![a, b],
-            Expr::If(a, b, c) => vec![a, b, c],
+            Expr::If(branches, last) => branches.iter().flat_map(|(c, a)| [c, a]).chain([&**last]).collect(),
         }
     }
 
@@ -304,8 +337,9 @@ impl<L> Expr<L> {
             Expr::Compare(op, a, b) => {
                 Expr::Compare(*op, Box::new(a.substitute(f)), Box::new(b.substitute(f)))
             }
-            Expr::If(a, b, c) => {
-                Expr::If(Box::new(a.substitute(f)), Box::new(b.substitute(f)), Box::new(c.substitute(f)))
+            Expr::If(branches, last) => {
+                let branches = branches.iter().map(|(c, a)| (c.substitute(f), a.substitute(f))).collect();
+                Expr::If(branches, Box::new(last.substitute(f)))
             }
         }
     }
@@ -331,7 +365,14 @@ impl<L> Expr<L> {
             Expr::ToReal(a) => a.integer(leaf).and_then(|n| Value::real(Rational::from(n))),
             Expr::Div(a, c) => a.integer(leaf)?.checked_div_euclid(*c).map(Value::Int),
             Expr::Mod(a, c) => a.integer(leaf)?.checked_rem_euclid(*c).map(Value::Int),
-            Expr::If(c, a, b) => if c.truth(leaf)? { a } else { b }.evaluate(leaf),
+            Expr::If(branches, last) => {
+                for (condition, value) in branches {
+                    if condition.truth(leaf)? {
+                        return value.evaluate(leaf);
+                    }
+                }
+                last.evaluate(leaf)
+            }
             Expr::Member(es, set) => {
                 let mut position = |e: &Expr<L>| match e.evaluate(leaf)? {
                     Value::Int(n) => Some(n),

@@ -22,7 +22,9 @@ mod target;
 
 pub use bounded::{bounded, extended};
 pub use edges::{Attribute, Edge, Edges};
-pub use expr::{Comparison, Expr, Leaf, PathLeaf, Rational, State, StepLeaf, TupleSet, Type, Value};
+pub use expr::{
+    Comparison, Expr, Leaf, PathLeaf, Rational, State, StepLeaf, TransLeaf, TupleSet, Type, Value,
+};
 pub use formula::{Formula, Interval, Node, Written};
 pub use ids::{ActionId, AttributeId, CostId, FormulaId, LabelId, PathId, SystemId, VarId};
 pub use lower::{Loader, Lowered, NoFiles, Overrides, lower, read};

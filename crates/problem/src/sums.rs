@@ -18,7 +18,7 @@ pub(crate) fn add_sum(system: &mut System, cost: CostId, cap: i64) -> VarId {
     let constant = |n| Expr::Const(Value::Int(n));
     let sum = Expr::Add(vec![here(), expr]);
     let fits = Expr::Compare(Comparison::Le, Box::new(sum.clone()), Box::new(constant(cap)));
-    let next = Expr::If(Box::new(fits), Box::new(sum), Box::new(constant(cap)));
+    let next = Expr::choice([(fits, sum)], constant(cap));
     let mut actions = system.actions.clone();
     actions.sort_unstable();
     let updates = vec![(var, Update::Assign(next))];

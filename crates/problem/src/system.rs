@@ -1,7 +1,7 @@
 //! Discrete transition systems (the paper's Definition 1, with initial states and nondeterminism).
 
 use crate::edges::Edges;
-use crate::expr::{Expr, Leaf, State, StepLeaf, Type, Value};
+use crate::expr::{Expr, Leaf, State, StepLeaf, TransLeaf, Type, Value};
 use crate::ids::{ActionId, AttributeId, CostId, LabelId, SystemId, VarId};
 use crate::place::Place;
 use crate::strategy::Trace;
@@ -15,8 +15,9 @@ use typed_index_collections::TiVec;
 /// system leads back to that state and nowhere else. In any other state `s`, a clause that lists action `a` and
 /// whose guard holds in `s` gives transitions `s -a-> s'`: one for each combination of the values that its updates
 /// allow, all expressions read in `s`, variables without an update unchanged; a combination in which some value is
-/// outside its variable's type is no transition. [`System::edges`] are further transitions of such states. Two ways to
-/// the same `s'` with the same action are one transition.
+/// outside its variable's type is no transition. [`System::edges`] are further transitions of such states. Of all these
+/// only those are transitions for which [`System::trans`] holds. Two ways to the same `s'` with the same action are one
+/// transition.
 ///
 /// Each [`Also`] that lists `a` and whose guard holds in `s` makes its updates too, whatever clause or edge gives the
 /// transition: as if they stood in it. What a transition itself changes, and what another such clause does, none of
@@ -35,6 +36,8 @@ pub struct System {
     pub also: Vec<Also>,
     /// Transitions that are listed one by one, for graphs.
     pub edges: Option<Edges>,
+    /// What holds of every step but those of absorbing states: other transitions are none.
+    pub trans: Expr<TransLeaf>,
     /// Initial states.
     pub init: Expr<Leaf>,
     /// What steps cost.
@@ -81,13 +84,15 @@ pub struct Cost {
     pub span: Span,
 }
 
-/// A named set of states.
+/// A named set of states; or, where it is no truth value, a name for something that depends on the state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Label {
     /// Its name.
     pub name: String,
-    /// Where it holds.
+    /// Where it holds, or what it is.
     pub expr: Expr<Leaf>,
+    /// Its type, with the bounds that its value cannot leave.
+    pub ty: Type,
     /// Whether it reads other labels.
     pub nested: bool,
     /// Its declaration.
@@ -182,26 +187,52 @@ pub enum Update<L = Leaf> {
     /// `v' in LO..HI`: every number of the variable's type between the two, both included; none where the first
     /// is greater.
     Within(Expr<L>, Expr<L>),
+    /// `v' in if C then SET else SET`: what stands beside the first condition that holds, or the last. No
+    /// [`Update::Assign`] stands inside.
+    If(Vec<(Expr<L>, Update<L>)>, Box<Update<L>>),
 }
 
 impl<L> Update<L> {
-    /// Its expressions.
+    /// Its expressions, conditions too.
     #[must_use]
     pub fn exprs(&self) -> Vec<&Expr<L>> {
         match self {
             Update::Assign(e) => vec![e],
             Update::OneOf(es) => es.iter().collect(),
             Update::Within(lo, hi) => vec![lo, hi],
+            Update::If(branches, last) => {
+                let own = branches.iter().flat_map(|(c, branch)| [c].into_iter().chain(branch.exprs()));
+                own.chain(last.exprs()).collect()
+            }
         }
     }
 
     /// The same of other expressions.
-    pub fn map<M>(&self, mut f: impl FnMut(&Expr<L>) -> Expr<M>) -> Update<M> {
+    pub fn map<M>(&self, f: &mut dyn FnMut(&Expr<L>) -> Expr<M>) -> Update<M> {
         match self {
             Update::Assign(e) => Update::Assign(f(e)),
             Update::OneOf(es) => Update::OneOf(es.iter().map(f).collect()),
             Update::Within(lo, hi) => Update::Within(f(lo), f(hi)),
+            Update::If(branches, last) => {
+                let branches = branches.iter().map(|(c, branch)| (f(c), branch.map(f))).collect();
+                Update::If(branches, Box::new(last.map(f)))
+            }
         }
+    }
+
+    /// What of it applies in a state, given which conditions hold there: never an [`Update::If`].
+    pub fn in_state<E>(&self, holds: &mut impl FnMut(&Expr<L>) -> Result<bool, E>) -> Result<&Update<L>, E> {
+        let mut update = self;
+        while let Update::If(branches, last) = update {
+            update = last;
+            for (condition, branch) in branches {
+                if holds(condition)? {
+                    update = branch;
+                    break;
+                }
+            }
+        }
+        Ok(update)
     }
 }
 
@@ -259,6 +290,15 @@ impl System {
             _ => None,
         };
         Some(map.place?.centre((number(map.x)?, number(map.y)?)))
+    }
+
+    /// The type of what a leaf reads.
+    #[must_use]
+    pub fn leaf_type(&self, leaf: Leaf) -> &Type {
+        match leaf {
+            Leaf::Var(var) => &self.vars[var].ty,
+            Leaf::Label(label) => &self.labels[label].ty,
+        }
     }
 
     /// The labels that a label reads, directly or not, in an order in which each reads only those before it.

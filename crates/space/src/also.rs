@@ -1,10 +1,7 @@
 //! What transitions do besides, as updates of the clauses and edges that give them.
 
-use crate::graph::TooLarge;
+use crate::eval::eval_in;
 use hyperplan_problem::{ActionId, Also, AttributeId, Expr, Leaf, StepLeaf, System, Update, Value, VarId};
-
-/// More commands than this are refused: each is a part of every step.
-pub const MAX_COMMANDS: usize = 4096;
 
 /// Updates of different variables.
 pub type Updates = Vec<(VarId, Update)>;
@@ -22,75 +19,59 @@ pub(crate) fn applicable<'s>(
 ) -> Vec<(&'s Also, Updates)> {
     let updates = |also: &Also| {
         let of = |(var, update): &(VarId, Update<StepLeaf>)| {
-            (*var, update.map(|expr| expr.of_state(action, number)))
+            (*var, update.map(&mut |expr| expr.of_state(action, number)))
         };
         also.updates.iter().map(of).collect()
     };
     system.also_on(action).map(|also| (also, updates(also))).collect()
 }
 
-/// What the transitions do besides that have that action and these numbers, whatever guards say: what applies where is
-/// told in the expressions. Where the result has several lists, each gives some of the outcomes.
-///
-/// # Errors
-/// [`TooLarge`] beyond [`MAX_COMMANDS`] lists.
-pub fn besides(
+/// Of these clauses, the updates of those whose guards hold in a state.
+pub(crate) fn applied<'u>(
     system: &System,
-    action: ActionId,
-    number: &dyn Fn(AttributeId) -> Expr<Leaf>,
-) -> Result<Vec<Updates>, TooLarge> {
+    all: &'u [(&Also, Updates)],
+    codes: &[i64],
+) -> impl Iterator<Item = &'u (VarId, Update)> {
+    let here = all.iter().filter(|(also, _)| eval_in(system, &also.guard, codes) != 0);
+    here.flat_map(|(_, updates)| updates)
+}
+
+/// What the transitions do besides that have that action and these numbers, whatever guards say: what applies where is
+/// told in the updates.
+pub fn besides(system: &System, action: ActionId, number: &dyn Fn(AttributeId) -> Expr<Leaf>) -> Updates {
     let applicable = applicable(system, action, number);
     let mut vars: Vec<VarId> = applicable.iter().flat_map(|(_, own)| own).map(|(var, _)| *var).collect();
     vars.sort_unstable();
     vars.dedup();
-    let mut all: Vec<Updates> = vec![Vec::new()];
-    for var in vars {
+    let update = |var: VarId| {
         let own = applicable.iter().filter_map(|(also, updates)| {
             let (_, update) = updates.iter().find(|(updated, _)| *updated == var)?;
             Some((&also.guard, update))
         });
-        let ways = one_of(var, &own.collect::<Vec<_>>());
-        if all.len() * ways.len() > MAX_COMMANDS {
-            return Err(TooLarge);
-        }
-        let with = |done: &Updates, way: &Update| done.iter().cloned().chain([(var, way.clone())]).collect();
-        all = all.iter().flat_map(|done| ways.iter().map(move |way| with(done, way))).collect();
-    }
-    Ok(all)
+        (var, one_of(var, &own.collect::<Vec<_>>()))
+    };
+    vars.into_iter().map(update).collect()
 }
 
 /// What becomes of a variable where no two of these guards hold together, and nothing becomes of it where none does.
-fn one_of(var: VarId, updates: &[(&Expr<Leaf>, &Update)]) -> Vec<Update> {
-    let choices = updates.iter().map(|(_, update)| match update {
-        Update::OneOf(es) => es.len(),
-        Update::Assign(_) | Update::Within(..) => 1,
-    });
-    let choices = choices.max().unwrap_or(1);
-    // The nth value of each, from 0 again where one has fewer.
-    let chosen = |nth: usize, upper: bool| {
-        updates.iter().rev().fold(Expr::Leaf(Leaf::Var(var)), |otherwise, (guard, update)| {
-            let value = match update {
-                Update::Assign(e) => e,
-                Update::OneOf(es) => &es[nth % es.len()],
-                Update::Within(lo, hi) => {
-                    if upper {
-                        hi
-                    } else {
-                        lo
-                    }
-                }
-            };
-            if guard.is_true() {
-                return value.clone();
-            }
-            Expr::If(Box::new((*guard).clone()), Box::new(value.clone()), Box::new(otherwise))
-        })
+fn one_of(var: VarId, updates: &[(&Expr<Leaf>, &Update)]) -> Update {
+    if let [(guard, update)] = updates
+        && guard.is_true()
+    {
+        return (*update).clone();
+    }
+    let unchanged = Expr::Leaf(Leaf::Var(var));
+    let value = |(guard, update): &(&Expr<Leaf>, &Update)| match update {
+        Update::Assign(e) => Some(((*guard).clone(), e.clone())),
+        _ => None,
     };
-    if updates.iter().any(|(_, update)| matches!(update, Update::Within(..))) {
-        return (0..choices).map(|nth| Update::Within(chosen(nth, false), chosen(nth, true))).collect();
+    if let Some(values) = updates.iter().map(value).collect::<Option<Vec<_>>>() {
+        return Update::Assign(Expr::choice(values, unchanged));
     }
-    match choices {
-        1 => vec![Update::Assign(chosen(0, false))],
-        _ => vec![Update::OneOf((0..choices).map(|nth| chosen(nth, false)).collect())],
-    }
+    let chosen = |update: &Update| match update {
+        Update::Assign(e) => Update::OneOf(vec![e.clone()]),
+        other => other.clone(),
+    };
+    let branches = updates.iter().map(|(guard, update)| ((*guard).clone(), chosen(update))).collect();
+    Update::If(branches, Box::new(Update::OneOf(vec![unchanged])))
 }

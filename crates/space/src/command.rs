@@ -1,7 +1,7 @@
 //! A system as guarded commands: the ways to take a step, and what each asks and does, without a list of its states.
 
-use crate::also::{self, MAX_COMMANDS};
-use crate::eval::{bounds, code, decode, holds_in, value_in};
+use crate::also;
+use crate::eval::{bounds, code, decode, holds_in, is_step, value_in};
 use crate::graph::TooLarge;
 use hyperplan_problem::{
     ActionId, AttributeId, Edges, Expr, Leaf, State, System, TupleSet, Type, Update, Value, VarId,
@@ -9,6 +9,9 @@ use hyperplan_problem::{
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+
+/// More commands than this are refused: each is a part of every step.
+pub const MAX_COMMANDS: usize = 4096;
 
 /// What becomes of a variable; expressions read the state before.
 #[derive(Clone, Debug)]
@@ -24,13 +27,8 @@ pub enum NewValue {
         /// The upper end.
         hi: Expr<Leaf>,
     },
-    /// Any value between two ends: an *input* of the step.
-    Between {
-        /// The lower end.
-        lo: Expr<Leaf>,
-        /// The upper end.
-        hi: Expr<Leaf>,
-    },
+    /// Any value that the update allows: an *input* of the step.
+    Among(Update),
 }
 
 /// New values of variables.
@@ -72,8 +70,8 @@ pub struct Commands {
 }
 
 impl Commands {
-    /// The commands of a system. A choice among too many values to list becomes an input where `open` says that a
-    /// variable of that type may be one.
+    /// The commands of a system. Choices with many conditions, and all choices of a clause where they are too many to
+    /// list, become inputs; those between two ends only where `open` says that a variable of that type may be one.
     ///
     /// # Errors
     /// [`TooLarge`] beyond [`MAX_COMMANDS`].
@@ -85,13 +83,12 @@ impl Commands {
             if !system.absorb.is_false() {
                 push(Guard::Absorbing, Vec::new());
             }
+            let besides = also::besides(system, action, &also::no_number);
             for (at, clause) in system.clauses.iter().enumerate() {
                 if clause.actions.contains(&action) {
-                    for besides in also::besides(system, action, &also::no_number)? {
-                        let updates: Vec<_> = clause.updates.iter().cloned().chain(besides).collect();
-                        for updates in combinations(system, &updates, open)? {
-                            push(Guard::Clause(at), updates);
-                        }
+                    let updates: Vec<_> = clause.updates.iter().chain(&besides).cloned().collect();
+                    for updates in combinations(system, &updates, open)? {
+                        push(Guard::Clause(at), updates);
                     }
                 }
             }
@@ -99,10 +96,8 @@ impl Commands {
                 for Table { targets, positions } in tables {
                     let targets = Arc::new(targets);
                     let number = |attribute| numbers(edges, &targets, &positions, attribute);
-                    for besides in also::besides(system, action, &number)? {
-                        for updates in combinations(system, &besides, open)? {
-                            push(Guard::Listed(edges.var, targets.clone()), updates);
-                        }
+                    for updates in combinations(system, &also::besides(system, action, &number), open)? {
+                        push(Guard::Listed(edges.var, targets.clone()), updates);
                     }
                 }
             }
@@ -111,7 +106,7 @@ impl Commands {
             }
         }
         let updates = all.iter().flat_map(|command| &command.updates);
-        let open = updates.filter(|(_, new)| matches!(new, NewValue::Between { .. }));
+        let open = updates.filter(|(_, new)| matches!(new, NewValue::Among(_)));
         let mut inputs: Vec<VarId> = open.map(|(var, _)| *var).collect();
         inputs.sort_unstable();
         inputs.dedup();
@@ -187,38 +182,42 @@ impl Command {
         }
         for (var, new) in &self.updates {
             let at = usize::from(*var);
-            let among = |value: Value, lo: &Expr<Leaf>, hi: &Expr<Leaf>| {
-                let (lo, hi) = (value_in(system, lo, from)?, value_in(system, hi, from)?);
-                (lo <= value && value <= hi).then_some(value)
-            };
             let value = match new {
                 NewValue::Is(expr) => value_in(system, expr, from)?,
-                NewValue::OneOf { value, lo, hi } => among(value_in(system, value, from)?, lo, hi)?,
-                NewValue::Between { lo, hi } => among(inputs[at], lo, hi)?,
+                NewValue::OneOf { value, lo, hi } => {
+                    let value = value_in(system, value, from)?;
+                    let (lo, hi) = (value_in(system, lo, from)?, value_in(system, hi, from)?);
+                    (lo <= value && value <= hi).then_some(value)?
+                }
+                NewValue::Among(update) => match allowed(system, *var, update, from)? {
+                    Allowed::These(values) => values.contains(&inputs[at]).then_some(inputs[at])?,
+                    Allowed::Between(lo, hi) => {
+                        (lo <= inputs[at] && inputs[at] <= hi).then_some(inputs[at])?
+                    }
+                },
             };
             if !system.vars[*var].ty.contains(value) {
                 return None;
             }
             to[at] = value;
         }
-        Some(to)
+        is_step(system, from, &to)?.then_some(to)
     }
 
-    /// The ends of its inputs' ranges.
-    fn ranges<'s>(
+    /// What its inputs may be in a state.
+    fn allowed<'s>(
         &'s self,
         system: &'s System,
         from: &'s [Value],
-    ) -> impl Iterator<Item = (VarId, Option<Value>, Option<Value>)> + 's {
+    ) -> impl Iterator<Item = (VarId, Option<Allowed>)> + 's {
         self.updates.iter().filter_map(move |(var, new)| match new {
-            NewValue::Between { lo, hi } => {
-                Some((*var, value_in(system, lo, from), value_in(system, hi, from)))
-            }
+            NewValue::Among(update) => Some((*var, allowed(system, *var, update, from))),
             NewValue::Is(_) | NewValue::OneOf { .. } => None,
         })
     }
 
-    /// Whether some input has more than one possible value in a state where the command can be taken.
+    /// Whether some input has more than one possible value in a state where the command can be taken. What `trans` says
+    /// of them is not asked.
     fn is_open(&self, system: &System, from: &[Value]) -> bool {
         let taken = match &self.guard {
             Guard::Absorbing => false,
@@ -229,17 +228,56 @@ impl Command {
         };
         taken
             && holds_in(system, &system.absorb, from) == Some(false)
-            && self.ranges(system, from).any(|(_, lo, hi)| lo < hi)
+            && self.allowed(system, from).any(|(_, allowed)| match allowed {
+                Some(Allowed::These(values)) => values.len() > 1,
+                Some(Allowed::Between(lo, hi)) => lo < hi,
+                None => false,
+            })
     }
 
-    /// The state with the lower end of each input's range.
+    /// The state with the least value of each input.
     fn lowest(&self, system: &System, from: &[Value]) -> Option<State> {
         let mut inputs: State = from.into();
-        for (var, lo, _) in self.ranges(system, from) {
-            inputs[usize::from(var)] = lo?;
+        for (var, allowed) in self.allowed(system, from) {
+            inputs[usize::from(var)] = match allowed? {
+                Allowed::These(values) => *values.first()?,
+                Allowed::Between(lo, _) => lo,
+            };
         }
         Some(inputs)
     }
+}
+
+/// What an input may be in a state.
+enum Allowed {
+    /// One of these, sorted, which are of its type.
+    These(Vec<Value>),
+    /// What lies between two ends and is of its type.
+    Between(Value, Value),
+}
+
+fn allowed(system: &System, var: VarId, update: &Update, from: &[Value]) -> Option<Allowed> {
+    let update = update.in_state(&mut |condition| holds_in(system, condition, from).ok_or(())).ok()?;
+    match update {
+        Update::Assign(e) => of_type(system, var, [value_in(system, e, from)?]),
+        Update::OneOf(es) => {
+            let values: Vec<Value> = es.iter().map(|e| value_in(system, e, from)).collect::<Option<_>>()?;
+            of_type(system, var, values)
+        }
+        Update::Within(lo, hi) => {
+            Some(Allowed::Between(value_in(system, lo, from)?, value_in(system, hi, from)?))
+        }
+        // There is none in a state.
+        Update::If(..) => None,
+    }
+}
+
+fn of_type(system: &System, var: VarId, values: impl IntoIterator<Item = Value>) -> Option<Allowed> {
+    let ty = &system.vars[var].ty;
+    let mut values: Vec<Value> = values.into_iter().filter(|value| ty.contains(*value)).collect();
+    values.sort_unstable();
+    values.dedup();
+    Some(Allowed::These(values))
 }
 
 /// Listed transitions, no two from one value, with their positions among all.
@@ -276,37 +314,41 @@ fn numbers(edges: &Edges, targets: &Listed, positions: &[usize], attribute: Attr
     if let (1, Some((number, _))) = (by_number.len(), by_number.first_key_value()) {
         return Expr::Const(Value::Int(*number));
     }
+    let constant = |n| Expr::Const(Value::Int(n));
     let term = |(number, sources): (i64, Vec<Box<[i64]>>)| {
         let node = Expr::Leaf(Leaf::Var(edges.var));
         let here = Expr::Member(vec![node], Arc::new(TupleSet::new(sources)));
-        let constant = |n| Box::new(Expr::Const(Value::Int(n)));
-        Expr::If(Box::new(here), constant(number), constant(0))
+        Expr::choice([(here, constant(number))], constant(0))
     };
     Expr::Add(by_number.into_iter().map(term).collect())
 }
 
-/// Every combination of the values that updates allow. Where they are too many to list, they are inputs of the step,
-/// if they may be.
+/// Combinations of values up to which each is a command of its own, where they may be inputs as well.
+const LISTED: usize = 64;
+
+/// Every combination of the values that updates allow. Where they are too many to list, they are inputs of the step.
 fn combinations(
     system: &System,
     updates: &[(VarId, Update)],
     open: &dyn Fn(&Type) -> bool,
 ) -> Result<Vec<Assignments>, TooLarge> {
+    let listed: Vec<Option<Vec<NewValue>>> =
+        updates.iter().map(|(var, update)| alternatives(system, *var, update)).collect();
+    let count = listed.iter().flatten().map(Vec::len).fold(1usize, usize::saturating_mul);
     let mut all: Vec<Assignments> = vec![Vec::new()];
-    for (var, update) in updates {
-        let values: Vec<NewValue> = match update {
-            Update::Assign(e) => vec![NewValue::Is(e.clone())],
-            Update::OneOf(es) => es.iter().cloned().map(NewValue::Is).collect(),
-            Update::Within(lo, hi) => match members(lo, hi, bounds(&system.vars[*var].ty)) {
-                Some(values) => values,
-                None if open(&system.vars[*var].ty) => {
-                    vec![NewValue::Between { lo: lo.clone(), hi: hi.clone() }]
-                }
-                None => return Err(TooLarge),
-            },
+    for ((var, update), listed) in updates.iter().zip(listed) {
+        let may_be_input = may_be_input(update, &|| open(&system.vars[*var].ty));
+        let values = match listed {
+            Some(values) if values.len() == 1 || count <= LISTED || !may_be_input => values,
+            _ if may_be_input => vec![NewValue::Among(update.clone())],
+            _ => return Err(TooLarge),
         };
         if all.len() * values.len() > MAX_COMMANDS {
             return Err(TooLarge);
+        }
+        if let [value] = &values[..] {
+            all.iter_mut().for_each(|done| done.push((*var, value.clone())));
+            continue;
         }
         all = all
             .iter()
@@ -320,6 +362,69 @@ fn combinations(
             .collect();
     }
     Ok(all)
+}
+
+/// Whether an update's value may be left to be found: one among some always, one between two ends where `open` says so.
+fn may_be_input(update: &Update, open: &dyn Fn() -> bool) -> bool {
+    match update {
+        Update::Assign(_) | Update::OneOf(_) => true,
+        Update::Within(..) => open(),
+        Update::If(branches, last) => {
+            branches.iter().all(|(_, branch)| may_be_input(branch, open)) && may_be_input(last, open)
+        }
+    }
+}
+
+/// The values that an update allows, one by one, perhaps one several times; `None` where it has many conditions, or
+/// they are too many.
+fn alternatives(system: &System, var: VarId, update: &Update) -> Option<Vec<NewValue>> {
+    match update {
+        Update::Assign(e) => Some(vec![NewValue::Is(e.clone())]),
+        Update::OneOf(es) => Some(es.iter().cloned().map(NewValue::Is).collect()),
+        Update::Within(lo, hi) => members(lo, hi, bounds(&system.vars[var].ty)),
+        Update::If(branches, _) if branches.len() > FEW => None,
+        Update::If(branches, last) => {
+            let of = |update| alternatives(system, var, update);
+            let last = of(last)?;
+            let branches: Vec<_> =
+                branches.iter().map(|(c, update)| Some((c, of(update)?))).collect::<Option<_>>()?;
+            let most = branches.iter().map(|(_, values)| values.len()).chain([last.len()]).max()?;
+            let none = branches.iter().map(|(_, values)| values).chain([&last]).any(Vec::is_empty);
+            if none && most > 1 {
+                // The last value stands for more only where there is one.
+                return None;
+            }
+            Some((0..most).map(|number| conditional(&branches, &last, number)).collect())
+        }
+    }
+}
+
+/// Conditions up to which a conditional choice may become a command for each of its values.
+const FEW: usize = 16;
+
+/// The value of that number beside the first condition that holds, or the last that there is.
+fn conditional(branches: &[(&Expr<Leaf>, Vec<NewValue>)], last: &[NewValue], number: usize) -> NewValue {
+    let of = |values: &[NewValue]| match values.get(number).or(values.last()) {
+        Some(NewValue::OneOf { value, lo, hi }) => (value.clone(), Some((lo.clone(), hi.clone()))),
+        Some(NewValue::Is(value)) => (value.clone(), None),
+        // A range that has no value of the type.
+        None | Some(NewValue::Among(_)) => {
+            let [zero, one] = [0, 1].map(|n| Expr::Const(Value::Int(n)));
+            (zero.clone(), Some((one, zero)))
+        }
+    };
+    let all: Vec<_> = branches.iter().map(|(c, values)| ((*c).clone(), of(values))).collect();
+    let (last, last_ends) = of(last);
+    let values = all.iter().map(|(c, (value, _))| (c.clone(), value.clone()));
+    let value = Expr::choice(values, last.clone());
+    if last_ends.is_none() && all.iter().all(|(_, (_, ends))| ends.is_none()) {
+        return NewValue::Is(value);
+    }
+    // What is no range lies between itself and itself.
+    let (last_lo, last_hi) = last_ends.unwrap_or((last.clone(), last));
+    let ends = all.into_iter().map(|(c, (value, ends))| (c, ends.unwrap_or((value.clone(), value))));
+    let (los, his): (Vec<_>, Vec<_>) = ends.map(|(c, (lo, hi))| ((c.clone(), lo), (c, hi))).unzip();
+    NewValue::OneOf { value, lo: Expr::choice(los, last_lo), hi: Expr::choice(his, last_hi) }
 }
 
 /// The values that may lie between two ends, of a variable with that range; `None` where there are too many.

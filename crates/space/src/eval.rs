@@ -1,7 +1,7 @@
 //! Expressions evaluated on concrete states: of a finite system as a row of integers (Booleans are 0 and 1,
 //! enumeration values their position), which is fast; of any system as values.
 
-use hyperplan_problem::{Comparison, Expr, LabelMemo, Leaf, System, Type, Value};
+use hyperplan_problem::{Comparison, Expr, LabelMemo, Leaf, TransLeaf, System, Type, Value};
 
 /// A value of a finite type as an integer.
 pub fn code(value: Value) -> i64 {
@@ -54,12 +54,13 @@ pub fn eval<L>(expr: &Expr<L>, leaf: &mut impl FnMut(&L) -> i64) -> i64 {
         Expr::Div(a, c) => eval(a, leaf).div_euclid(*c),
         Expr::Mod(a, c) => eval(a, leaf).rem_euclid(*c),
         Expr::Scale(..) | Expr::ToReal(_) => unreachable!("finite systems have no reals"),
-        Expr::If(c, a, b) => {
-            if eval(c, leaf) != 0 {
-                eval(a, leaf)
-            } else {
-                eval(b, leaf)
+        Expr::If(branches, last) => {
+            for (condition, value) in branches {
+                if eval(condition, leaf) != 0 {
+                    return eval(value, leaf);
+                }
             }
+            eval(last, leaf)
         }
         Expr::Member(es, set) => {
             let tuple: Vec<i64> = es.iter().map(|e| eval(e, leaf)).collect();
@@ -71,7 +72,20 @@ pub fn eval<L>(expr: &Expr<L>, leaf: &mut impl FnMut(&L) -> i64) -> i64 {
 /// The value of an expression over one system in a state.
 pub fn eval_in(system: &System, expr: &Expr<Leaf>, state: &[i64]) -> i64 {
     let mut labels = LabelMemo::default();
+    eval(expr, &mut |leaf| code_of(system, *leaf, state, &mut labels))
+}
+
+/// The value of an expression over a step of one system, between two states.
+pub fn eval_trans(system: &System, expr: &Expr<TransLeaf>, from: &[i64], to: &[i64]) -> i64 {
+    let (mut before, mut after) = (LabelMemo::default(), LabelMemo::default());
     eval(expr, &mut |leaf| match *leaf {
+        TransLeaf::Before(leaf) => code_of(system, leaf, from, &mut before),
+        TransLeaf::After(leaf) => code_of(system, leaf, to, &mut after),
+    })
+}
+
+fn code_of(system: &System, leaf: Leaf, state: &[i64], labels: &mut LabelMemo<i64>) -> i64 {
+    match leaf {
         Leaf::Var(v) => state[usize::from(v)],
         Leaf::Label(l) => labels.find(system, l, &mut |expr, known| {
             eval(expr, &mut |leaf| match *leaf {
@@ -79,6 +93,17 @@ pub fn eval_in(system: &System, expr: &Expr<Leaf>, state: &[i64]) -> i64 {
                 Leaf::Label(l) => known.known(l).unwrap_or(0),
             })
         }),
+    }
+}
+
+/// Whether a step of a system between two states is one by [`System::trans`]; `None` where a number does not fit.
+pub fn is_step(system: &System, from: &[Value], to: &[Value]) -> Option<bool> {
+    if system.trans.is_true() {
+        return Some(true);
+    }
+    system.trans.truth(&mut |leaf| match *leaf {
+        TransLeaf::Before(leaf) => value_in(system, &Expr::Leaf(leaf), from),
+        TransLeaf::After(leaf) => value_in(system, &Expr::Leaf(leaf), to),
     })
 }
 

@@ -1,11 +1,10 @@
 //! Enumerating the reachable states of a system, breadth first from its initial ones.
 
-use crate::also::{Updates, applicable, no_number};
+use crate::also::{Updates, applicable, applied, no_number};
 use crate::eval::{bounds, eval_in};
 use crate::graph::{Graph, LIVE, Letter, StateIx, TooLarge};
-use hyperplan_problem::{
-    ActionId, Also, Clause, Expr, LabelId, LabelMemo, Leaf, System, Update, Value, VarId,
-};
+use crate::step::{Steps, conjuncts, variables_read};
+use hyperplan_problem::{ActionId, Also, Clause, Expr, Leaf, System, Update, Value, VarId};
 use rustc_hash::FxHashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -26,6 +25,7 @@ impl Graph {
             width: system.vars.len(),
             codes: Vec::new(),
             index: FxHashMap::default(),
+            steps: Steps::new(system),
             also: FxHashMap::default(),
             positions: (0u32..).zip(&system.actions).map(|(at, action)| (*action, at)).collect(),
         };
@@ -51,7 +51,9 @@ fn is_too_wide(system: &System, budget: usize) -> bool {
     let outcomes = |clause: &Clause| clause.updates.iter().map(width).fold(1u128, u128::saturating_mul);
     let everywhere = system.clauses.iter().filter(|clause| clause.guard.is_true());
     let most = everywhere.map(outcomes).max().unwrap_or(0);
-    system.absorb.is_false() && most.saturating_mul(most) > budget.saturating_mul(16) as u128
+    system.absorb.is_false()
+        && system.trans.is_true()
+        && most.saturating_mul(most) > budget.saturating_mul(16) as u128
 }
 
 /// Systems that were enumerated, for objectives over equal ones.
@@ -115,6 +117,7 @@ struct Explorer<'a> {
     packing: Packing,
     width: usize,
     codes: Vec<i64>,
+    steps: Steps<'a>,
     index: FxHashMap<u128, StateIx>,
     /// What transitions with an action do besides, by its position, where it is the same for all.
     also: FxHashMap<u32, Vec<(&'a Also, Updates)>>,
@@ -219,7 +222,7 @@ impl Explorer<'_> {
                 continue;
             }
             if system.also.is_empty() {
-                for next in outcomes(system, &clause.updates, codes, self.budget)? {
+                for next in self.steps.outcomes(&clause.updates, codes, self.budget)? {
                     if let Some(next) = self.intern(&next)? {
                         found.extend(action_positions(system, clause).map(|a| (a, next)));
                     }
@@ -229,7 +232,7 @@ impl Explorer<'_> {
             for at in action_positions(system, clause) {
                 let besides = self.besides(at, None, codes);
                 let updates = clause.updates.iter().chain(&besides);
-                for next in outcomes(system, updates, codes, self.budget)? {
+                for next in self.steps.outcomes(updates, codes, self.budget)? {
                     found.extend(self.intern(&next)?.map(|next| (at, next)));
                 }
             }
@@ -255,8 +258,7 @@ impl Explorer<'_> {
             }
             None => self.also.entry(action).or_insert_with(find),
         };
-        let here = all.iter().filter(|(also, _)| eval_in(system, &also.guard, codes) != 0);
-        here.flat_map(|(_, updates)| updates.iter().cloned()).collect()
+        applied(system, all, codes).cloned().collect()
     }
 
     /// The transitions that the system lists one by one.
@@ -265,13 +267,13 @@ impl Explorer<'_> {
         let var = usize::from(edges.var);
         for (at, edge) in edges.numbered(u32::try_from(codes[var]).unwrap_or(u32::MAX)) {
             let Some(&action) = self.positions.get(&edge.action) else { continue };
-            let besides = if self.system.also.is_empty() {
+            let mut updates = if self.system.also.is_empty() {
                 Updates::new()
             } else {
                 self.besides(action, Some(at), codes)
             };
-            for mut next in outcomes(self.system, &besides, codes, self.budget)? {
-                next[var] = i64::from(edge.to);
+            updates.push((edges.var, Update::Assign(Expr::Const(Value::Enum(edge.to)))));
+            for next in self.steps.outcomes(&updates, codes, self.budget)? {
                 found.extend(self.intern(&next)?.map(|next| (action, next)));
             }
         }
@@ -279,94 +281,13 @@ impl Explorer<'_> {
     }
 }
 
-/// The states that updates allow, in or out of range.
-pub(crate) fn outcomes<'u>(
-    system: &System,
-    updates: impl IntoIterator<Item = &'u (VarId, Update)>,
-    codes: &[i64],
-    budget: usize,
-) -> Result<Vec<Vec<i64>>, TooLarge> {
-    let mut all = vec![codes.to_vec()];
-    for (var, update) in updates {
-        let values = update_values(system, *var, update, codes, budget / all.len().max(1))?;
-        all = all
-            .iter()
-            .flat_map(|done| {
-                values.iter().map(|&value| {
-                    let mut next = done.clone();
-                    next[usize::from(*var)] = value;
-                    next
-                })
-            })
-            .collect();
-    }
-    Ok(all)
-}
-
-/// The least and greatest values that an update gives, whatever the variable's type.
-pub(crate) fn update_values_unclipped(system: &System, update: &Update, codes: &[i64]) -> Vec<i64> {
-    match update {
-        Update::Assign(e) => vec![eval_in(system, e, codes)],
-        Update::OneOf(es) => es.iter().map(|e| eval_in(system, e, codes)).collect(),
-        Update::Within(lo, hi) => vec![eval_in(system, lo, codes), eval_in(system, hi, codes)],
-    }
-}
-
-/// The values that an update allows, no more than `most`; those outside the variable's type may be left out.
-fn update_values(
-    system: &System,
-    var: VarId,
-    update: &Update,
-    codes: &[i64],
-    most: usize,
-) -> Result<Vec<i64>, TooLarge> {
-    let (lo, hi) = match update {
-        Update::Assign(_) => (0, 0),
-        Update::OneOf(es) => (1, es.len() as i64),
-        Update::Within(lo, hi) => {
-            let (least, greatest) = bounds(&system.vars[var].ty).ok_or(TooLarge)?;
-            (eval_in(system, lo, codes).max(least), eval_in(system, hi, codes).min(greatest))
-        }
-    };
-    // Ranges may have more values than there is memory.
-    if i128::from(hi) - i128::from(lo) >= most as i128 {
-        return Err(TooLarge);
-    }
-    Ok(match update {
-        Update::Assign(_) | Update::OneOf(_) => update_values_unclipped(system, update, codes),
-        Update::Within(..) => (lo..=hi).collect(),
-    })
-}
-
 fn action_positions<'a>(system: &'a System, clause: &'a Clause) -> impl Iterator<Item = u32> + 'a {
     (0u32..).zip(&system.actions).filter(|(_, a)| clause.actions.contains(a)).map(|(at, _)| at)
 }
 
-/// The parts of a conjunction.
-fn conjuncts(expr: &Expr<Leaf>) -> Vec<&Expr<Leaf>> {
-    match expr {
-        Expr::And(es) => es.iter().flat_map(conjuncts).collect(),
-        other => vec![other],
-    }
-}
-
 /// How many variables, in order of declaration, must be assigned before the expression has a value.
 fn variables_needed(system: &System, expr: &Expr<Leaf>) -> usize {
-    let mut labels = LabelMemo::default();
-    last_variable(expr, &mut |l| {
-        labels.find(system, l, &mut |expr, known| last_variable(expr, &mut |l| known.known(l).unwrap_or(0)))
-    })
-}
-
-fn last_variable(expr: &Expr<Leaf>, label: &mut dyn FnMut(LabelId) -> usize) -> usize {
-    let mut needed = 0;
-    expr.for_each_leaf(&mut |leaf| {
-        needed = needed.max(match *leaf {
-            Leaf::Var(v) => usize::from(v) + 1,
-            Leaf::Label(l) => label(l),
-        });
-    });
-    needed
+    variables_read(system, expr, &|leaf| Some(*leaf)).last().map_or(0, |var| usize::from(*var) + 1)
 }
 
 type Letters = Vec<(ActionId, u32)>;

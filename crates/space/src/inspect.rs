@@ -1,9 +1,10 @@
 //! What `check` wants to know of a system's reachable states.
 
+use crate::also::{Updates, applicable, applied, no_number};
 use crate::eval::{bounds, eval_in};
-use crate::explore::{outcomes, update_values_unclipped};
 use crate::graph::{Graph, StateIx};
-use hyperplan_problem::{Expr, LabelId, Leaf, System, Var};
+use crate::step::{Steps, update_values_unclipped};
+use hyperplan_problem::{ActionId, Expr, LabelId, Leaf, System, Type, Var};
 
 /// Things that are probably not meant, each with a reachable state as an example.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -35,6 +36,8 @@ pub fn inspect(system: &System, graph: &Graph, stop: &dyn Fn() -> bool) -> Optio
     let mut findings = Findings::default();
     let mut seen = vec![false; system.labels.len()];
     findings.idle = (0..system.also.len()).collect();
+    let truths: Vec<bool> = system.labels.iter().map(|label| label.ty == Type::Bool).collect();
+    let steps = Steps::new(system);
     for state in 0..graph.len() as StateIx {
         if state % STRIDE == 0 && stop() {
             return None;
@@ -44,28 +47,28 @@ pub fn inspect(system: &System, graph: &Graph, stop: &dyn Fn() -> bool) -> Optio
             let (count, _) = findings.dead_ends.get_or_insert((0, state));
             *count += 1;
         }
-        for (at, seen) in seen.iter_mut().enumerate() {
+        for (at, seen) in seen.iter_mut().enumerate().filter(|(at, _)| truths[*at]) {
             *seen |= eval_in(system, &Expr::Leaf(Leaf::Label(LabelId::from(at))), codes) != 0;
         }
         if eval_in(system, &system.absorb, codes) == 0 {
-            clauses(system, state, codes, &mut findings);
+            clauses(system, &steps, state, codes, &mut findings);
             findings.idle.retain(|&at| eval_in(system, &system.also[at].guard, codes) == 0);
         }
     }
-    findings.unreachable = (0..seen.len()).filter(|&at| !seen[at]).map(LabelId::from).collect();
+    findings.unreachable = (0..seen.len()).filter(|&at| truths[at] && !seen[at]).map(LabelId::from).collect();
     Some(findings)
 }
 
-fn clauses(system: &System, state: StateIx, codes: &[i64], findings: &mut Findings) {
+fn clauses(system: &System, steps: &Steps<'_>, state: StateIx, codes: &[i64], findings: &mut Findings) {
     let enabled: Vec<usize> = (0..system.clauses.len())
         .filter(|&at| !system.clauses[at].generated && eval_in(system, &system.clauses[at].guard, codes) != 0)
         .collect();
     for (at, &first) in enabled.iter().enumerate() {
         for &second in &enabled[at + 1..] {
             let actions = &system.clauses[second].actions;
-            let shared = system.clauses[first].actions.iter().any(|a| actions.contains(a));
+            let mut shared = system.clauses[first].actions.iter().filter(|a| actions.contains(a));
             let known = || findings.overlaps.iter().any(|o| (o.0, o.1) == (first, second));
-            if shared && !known() && differ(system, first, second, codes) {
+            if !known() && shared.any(|&action| differ(system, steps, [first, second], action, codes)) {
                 findings.overlaps.push((first, second, state));
             }
         }
@@ -78,10 +81,13 @@ fn clauses(system: &System, state: StateIx, codes: &[i64], findings: &mut Findin
     }
 }
 
-/// Whether both clauses have outcomes, and not the same.
-fn differ(system: &System, first: usize, second: usize, codes: &[i64]) -> bool {
+/// Whether both clauses have outcomes by that action, and not the same.
+fn differ(system: &System, steps: &Steps<'_>, both: [usize; 2], action: ActionId, codes: &[i64]) -> bool {
+    let also = applicable(system, action, &no_number);
+    let besides: Updates = applied(system, &also, codes).cloned().collect();
     let outcomes = |clause: usize| -> Option<Vec<Vec<i64>>> {
-        let mut all = outcomes(system, &system.clauses[clause].updates, codes, OUTCOMES).ok()?;
+        let updates = system.clauses[clause].updates.iter().chain(&besides);
+        let mut all = steps.outcomes(updates, codes, OUTCOMES).ok()?;
         let inside = |next: &Vec<i64>| {
             let fits =
                 |(value, var): (&i64, &Var)| bounds(&var.ty).is_none_or(|(lo, hi)| (lo..=hi).contains(value));
@@ -92,8 +98,8 @@ fn differ(system: &System, first: usize, second: usize, codes: &[i64]) -> bool {
         all.dedup();
         Some(all)
     };
-    match (outcomes(first), outcomes(second)) {
-        (Some(a), Some(b)) => !a.is_empty() && !b.is_empty() && a != b,
+    match both.map(outcomes) {
+        [Some(a), Some(b)] => !a.is_empty() && !b.is_empty() && a != b,
         _ => true,
     }
 }

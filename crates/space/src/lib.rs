@@ -8,8 +8,8 @@
 //! There is no formula here, no path variable but as a label of a trace, no term and no solver. Nothing depends on how
 //! states are going to be written.
 //!
-//! `eval` gives expressions their values; `graph` and `command` read it, `explore` fills graphs, `run` and `inspect` read
-//! them.
+//! `eval` gives expressions their values; `also` says what transitions do besides, `step` where updates lead; `graph` and
+//! `command` read them, `explore` fills graphs, `run` and `inspect` read those.
 
 mod also;
 mod command;
@@ -19,13 +19,14 @@ mod explore;
 mod graph;
 mod inspect;
 mod run;
+mod step;
 #[cfg(test)]
 mod tests;
 
-pub use also::{MAX_COMMANDS, Updates, besides, no_number};
-pub use command::{Command, Commands, Guard, Listed, NewValue};
+pub use also::{Updates, besides, no_number};
+pub use command::{Command, Commands, Guard, Listed, MAX_COMMANDS, NewValue};
 pub use cost::step_costs;
-pub use eval::{bounds, code, decode, eval, eval_in, holds_in, value_in};
+pub use eval::{bounds, code, decode, eval, eval_in, eval_trans, holds_in, is_step, value_in};
 pub use explore::Graphs;
 pub use graph::{Graph, LIVE, Letter, StateIx, TooLarge};
 pub use inspect::{Findings, inspect};

@@ -108,6 +108,8 @@ pub enum SystemItem {
     Observe(Vec<Expr>),
     /// `absorb EXPR;`
     Absorb(Expr),
+    /// `trans EXPR;`, over the states before and after a step
+    Trans(Expr),
     /// `moves up, down, ...;` (maps only)
     Moves(Vec<Ident>),
     /// `obstacle undefined|stay|crash;` (maps only)
@@ -286,6 +288,8 @@ pub enum ExprKind {
     Name(String),
     /// `"NAME"`: an enumeration value or action, whatever its name
     Text(String),
+    /// `NAME'`: a variable or label after the step, in `trans`.
+    Primed(String),
     /// `NAME[PATH]`: a label or variable of a path, `action[p]`, `state[p]`, `obs[p]`, `enabled[p]`.
     /// More than one path is kept for the message that refuses it.
     At(Ident, Vec<Ident>),
@@ -315,8 +319,9 @@ pub enum ExprKind {
     In(Box<Expr>, Set),
     /// `(E, E, ...)`, at least two
     Tuple(Vec<Expr>),
-    /// `if C then A else B`
-    If(Box<Expr>, Box<Expr>, Box<Expr>),
+    /// `if C then A else if D then B else E`: each condition with its value, at least one, and the value where none
+    /// holds. A chain is flat, however long it is: the last value is never an `if` itself.
+    If(Vec<(Expr, Expr)>, Box<Expr>),
     /// `X N F G`
     Unary(UnaryOp, Option<Interval>, Box<Expr>),
     /// `U R W M`
@@ -332,6 +337,8 @@ pub enum Set {
     Range(Box<Expr>, Box<Expr>),
     /// `enabled[p]`
     Enabled(Ident, Span),
+    /// `if C then SET else if D then SET else SET`, flat as [`ExprKind::If`] is; to the right of an update's `in` only.
+    If(Vec<(Expr, Set)>, Box<Set>, Span),
 }
 
 /// Comparison operators.

@@ -16,7 +16,7 @@ use nom_locate::LocatedSpan;
 use crate::diagnostic::Diagnostic;
 use crate::lookalike::looks_like;
 use crate::span::{SourceId, Span};
-use crate::token::{SYMBOLS, Tok, Token, reserved};
+use crate::token::{SYMBOLS, Tok, Token, is_operator, reserved};
 
 type Input<'a> = LocatedSpan<&'a str>;
 type Lexed<'a, T> = IResult<Input<'a>, T>;
@@ -72,6 +72,8 @@ fn read<'a>(source: SourceId, text: &'a str, lexemes: &mut Lexemes<'a>) {
     let mut input = Input::new(text.strip_prefix('\u{feff}').unwrap_or(text));
     let skipped = text.len() - input.fragment().len();
     let mut line = 0;
+    // Between a quantifier and its point, which a word may touch: `exists p.goal[p]`.
+    let mut quantifier = false;
     loop {
         input = blanks(input, |comment| {
             let start = comment.location_offset() + skipped;
@@ -82,7 +84,7 @@ fn read<'a>(source: SourceId, text: &'a str, lexemes: &mut Lexemes<'a>) {
         // Behind `x[p]` one is as wrong as any, but it is a prime that is meant.
         let primed = |last: &Token<'_>| matches!(last.tok, Tok::Ident | Tok::RBracket) && touches_word(last);
         let after_word = tokens.last().is_some_and(primed);
-        let Ok((next, (lexeme, piece))) = lexeme(input, after_word) else { return };
+        let Ok((next, (lexeme, piece))) = lexeme(input, after_word, quantifier) else { return };
         let start = piece.location_offset() + skipped;
         let span = Span::new(source, start..start + piece.fragment().len());
         let first_on_line = tokens.is_empty() || piece.location_line() != line;
@@ -95,6 +97,11 @@ fn read<'a>(source: SourceId, text: &'a str, lexemes: &mut Lexemes<'a>) {
                 }
                 Tok::Bad
             }
+        };
+        quantifier = match tok {
+            Tok::Exists | Tok::Forall => true,
+            Tok::Ident | Tok::Comma | Tok::Colon => quantifier,
+            _ => false,
         };
         tokens.push(Token { tok, text: piece.into_fragment(), span, first_on_line });
         input = next;
@@ -175,28 +182,66 @@ fn line(input: Input<'_>) -> Lexed<'_, Input<'_>> {
     take_while(|c| !matches!(c, '\n' | '\r'))(input)
 }
 
-fn lexeme<'a>(input: Input<'a>, after_word: bool) -> Lexed<'a, (Lexeme, Input<'a>)> {
+fn lexeme<'a>(input: Input<'a>, after_word: bool, quantifier: bool) -> Lexed<'a, (Lexeme, Input<'a>)> {
     if after_word && let Ok((rest, piece)) = tag::<_, _, Error<Input<'a>>>("'")(input) {
         return Ok((rest, (Lexeme::Good(Tok::Prime), piece)));
     }
+    let word = |input| if quantifier { plain_word(input) } else { word(input) };
     alt((word, number, string, quoted, block_comment, symbol, other)).parse(input)
 }
 
-fn word(input: Input<'_>) -> Lexed<'_, (Lexeme, Input<'_>)> {
+fn plain_word(input: Input<'_>) -> Lexed<'_, (Lexeme, Input<'_>)> {
     let letter = satisfy(|c| c.is_ascii_alphabetic() || c == '_');
     let (rest, piece) = recognize(pair(letter, take_while(is_word_character))).parse(input)?;
     Ok((rest, (Lexeme::Good(reserved(piece.fragment()).unwrap_or(Tok::Ident)), piece)))
+}
+
+/// A word, or a name of parts: `proc.line`, `queue[0][1]`. What may have an interval behind it is no such part.
+fn word(input: Input<'_>) -> Lexed<'_, (Lexeme, Input<'_>)> {
+    let (rest, (lexeme, piece)) = plain_word(input)?;
+    let more = match lexeme {
+        Lexeme::Good(Tok::Ident) if !is_operator(piece.fragment()) => parts(rest.fragment()),
+        _ => 0,
+    };
+    if more == 0 {
+        return Ok((rest, (lexeme, piece)));
+    }
+    let (rest, piece) = input.take_split(piece.fragment().len() + more);
+    Ok((rest, (Lexeme::Good(Tok::Ident), piece)))
+}
+
+/// How much of the text are further parts of a name.
+fn parts(text: &str) -> usize {
+    let mut at = 0;
+    loop {
+        let rest = &text[at..];
+        let word = |from: &str| from.find(|c| !is_word_character(c)).unwrap_or(from.len());
+        at += match rest.as_bytes() {
+            [b'.', first, ..] if first.is_ascii_alphabetic() || *first == b'_' => 1 + word(&rest[1..]),
+            [b'[', b'0'..=b'9', ..] => {
+                let digits = rest[1..].find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len() - 1);
+                if rest.as_bytes().get(1 + digits) != Some(&b']') {
+                    return at;
+                }
+                digits + 2
+            }
+            _ => return at,
+        };
+    }
 }
 
 fn is_word_character(c: char) -> bool {
     c.is_ascii_alphanumeric() || c == '_'
 }
 
-/// Whether the text can be a name: a word that is not reserved.
+/// Whether the text can be a name: a word that is not reserved, or several with points between them, or with indices.
 #[must_use]
 pub fn is_name(text: &str) -> bool {
     let begins = text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
-    begins && text.chars().all(is_word_character) && reserved(text).is_none()
+    let first = text.find(|c| !is_word_character(c)).unwrap_or(text.len());
+    let (word, rest) = text.split_at(first);
+    let whole = rest.is_empty() || !is_operator(word) && parts(rest) == rest.len();
+    begins && whole && reserved(word).is_none()
 }
 
 /// Digits, with a fraction only where a digit follows the point: `0..2` begins with the number `0`.

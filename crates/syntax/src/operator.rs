@@ -299,6 +299,7 @@ impl Operator {
             ExprKind::Bool(_)
             | ExprKind::Number(_)
             | ExprKind::Name(_)
+            | ExprKind::Primed(_)
             | ExprKind::Text(_)
             | ExprKind::At(..)
             | ExprKind::Cost(..)

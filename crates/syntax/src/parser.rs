@@ -5,6 +5,7 @@
 //! ends the declaration it stands in: it is reported once, and parsing goes on behind the next `;`,
 //! at the closing `}`, or at the next line that begins with a keyword.
 
+mod choice;
 mod expr;
 mod habit;
 mod item;
@@ -44,7 +45,7 @@ pub fn parse(source: SourceId, text: &str) -> (File, Vec<Diagnostic>) {
     if tokens.len() == 1 {
         return (File::default(), errors);
     }
-    let mut parser = Parser { tokens, at: 0, text, errors, braces: 0, depth: 0, skipped: Vec::new() };
+    let mut parser = Parser::new(tokens, text, errors);
     let mut file = parser.file();
     file.skipped = parser.skipped;
     let mut errors = parser.errors;
@@ -59,7 +60,7 @@ pub fn parse(source: SourceId, text: &str) -> (File, Vec<Diagnostic>) {
 /// Parses expressions with commas between them, as they stand behind `minimize`; none where there is an error.
 pub fn parse_exprs(source: SourceId, text: &str) -> (Vec<Expr>, Vec<Diagnostic>) {
     let Lexemes { tokens, errors, .. } = lex(source, text);
-    let mut parser = Parser { tokens, at: 0, text, errors, braces: 0, depth: 0, skipped: Vec::new() };
+    let mut parser = Parser::new(tokens, text, errors);
     let all = parser.separated(Parser::expr).and_then(|all| match parser.peek() {
         Tok::Eof => Ok(all),
         _ => parser.fail("an operator, `,` or the end"),
@@ -85,9 +86,15 @@ struct Parser<'a> {
     depth: u32,
     /// See [`File::skipped`].
     skipped: Vec<Span>,
+    /// Whether expressions may speak of the state after a step, as `trans` does.
+    primes: bool,
 }
 
 impl<'a> Parser<'a> {
+    fn new(tokens: Vec<Token<'a>>, text: &'a str, errors: Vec<Diagnostic>) -> Self {
+        Parser { tokens, at: 0, text, errors, braces: 0, depth: 0, skipped: Vec::new(), primes: false }
+    }
+
     fn token(&self) -> Token<'a> {
         self.token_at(0)
     }

@@ -122,6 +122,11 @@ pub(crate) fn reserved(word: &str) -> Option<Tok> {
     keyword.or_else(|| operator().map(|row| Tok::Op(row.operator)))
 }
 
+/// Whether the word is an operator, be it in some places only.
+pub(crate) fn is_operator(word: &str) -> bool {
+    TABLE.iter().any(|row| row.name == word)
+}
+
 impl Token<'_> {
     /// How messages name it.
     pub(crate) fn describe(&self) -> String {

@@ -64,6 +64,7 @@ fn describe(item: &SystemItem) -> String {
             format!("observe {}", exprs.iter().map(show).collect::<Vec<_>>().join(","))
         }
         SystemItem::Absorb(expr) => format!("absorb {}", show(expr)),
+        SystemItem::Trans(expr) => format!("trans {}", show(expr)),
         SystemItem::Moves(moves) => format!("moves {}", names(moves)),
         SystemItem::Obstacle(rule) => format!("obstacle {}", rule.name),
         SystemItem::Edge(rule) => format!("edge {}", rule.name),

@@ -5,7 +5,7 @@ mod common;
 use common::{SOURCE, faults};
 use hyperplan_random::property;
 use hyperplan_syntax::ast::{ExprKind, Item};
-use hyperplan_syntax::{MAX_NESTING, SourceMap, parse, render};
+use hyperplan_syntax::{MAX_NESTING, SourceMap, parse, print, render};
 
 const MANY: usize = 100_000;
 
@@ -30,7 +30,8 @@ fn deep_nesting_is_refused() {
     only_too_deep(&format!("const A = {}a;", repeat("a <-> ")));
     only_too_deep(&format!("const A = {}a;", repeat("a * ")));
     only_too_deep(&format!("const A = {}a;", repeat("if a then ")));
-    only_too_deep(&format!("const A = {}a;", repeat("if a then b else ")));
+    only_too_deep(&format!("const A = {}a;", repeat("if a then b else 1 + ")));
+    only_too_deep(&format!("system S {{ on a {{ x' in {}{{1}}; }} }}", repeat("if a then ")));
     only_too_deep(&format!("const A = {}a;", repeat("(a, ")));
     only_too_deep(&format!("const A = {}a;", repeat("a & (b | (")));
     only_too_deep(&format!("objective o {{ {}a }}", repeat("!(")));
@@ -85,6 +86,20 @@ fn long_chains_are_fine() {
         assert_eq!(length, expected);
         drop(file);
     }
+}
+
+/// Whoever translates a `case` of another language writes chains like this.
+#[test]
+fn long_chains_of_conditions_are_flat() {
+    let text = format!("const A = {}a;", "if a then b else ".repeat(MANY));
+    let (file, errors) = parse(SOURCE, &text);
+    assert!(errors.is_empty());
+    let Item::Const(constant) = &file.items[0] else { panic!("no constant") };
+    let ExprKind::If(branches, _) = &constant.value.kind else { panic!("no condition") };
+    assert_eq!(branches.len(), MANY);
+    assert_eq!(parse(SOURCE, &print(&file, "")).0.items.len(), 1);
+    let text = format!("system S {{ on a {{ x' in {}0..9; }} }}", "if a then {1, 2} else ".repeat(MANY));
+    assert!(parse(SOURCE, &text).1.is_empty());
 }
 
 #[test]

@@ -131,11 +131,14 @@ impl Translation<'_> {
                 let (a, b) = (self.boolean(a), self.boolean(b));
                 self.iff(a, b)
             }
-            Expr::If(c, a, b) => {
-                let (c, a, b) = (self.boolean(c), self.boolean(a), self.boolean(b));
-                let then = self.connect(Connective::Or, &[(c.1, c.0), a]);
-                let otherwise = self.connect(Connective::Or, &[c, b]);
-                self.connect(Connective::And, &[then, otherwise])
+            Expr::If(branches, last) => {
+                let last = self.boolean(last);
+                branches.iter().rev().fold(last, |rest, (c, a)| {
+                    let (c, a) = (self.boolean(c), self.boolean(a));
+                    let then = self.connect(Connective::Or, &[(c.1, c.0), a]);
+                    let otherwise = self.connect(Connective::Or, &[c, rest]);
+                    self.connect(Connective::And, &[then, otherwise])
+                })
             }
             _ => self.atom(expr),
         }

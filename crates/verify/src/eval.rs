@@ -23,16 +23,33 @@ pub(crate) fn eval<L>(expr: &Expr<L>, leaf: &impl Fn(&L) -> Option<Value>) -> Op
         Expr::ToReal(a) => int(a, leaf).and_then(|n| Value::real(n.into())),
         Expr::Div(a, c) => int(a, leaf)?.checked_div_euclid(*c).map(Value::Int),
         Expr::Mod(a, c) => int(a, leaf)?.checked_rem_euclid(*c).map(Value::Int),
-        Expr::If(c, a, b) => match truth(c, leaf) {
-            Some(true) => eval(a, leaf),
-            Some(false) => eval(b, leaf),
-            None => eval(a, leaf).filter(|v| eval(b, leaf) == Some(*v)),
-        },
+        Expr::If(branches, last) => chain(branches, last, leaf),
         Expr::Member(es, set) => {
             let tuple = es.iter().map(|e| member(e, leaf)).collect::<Option<Vec<i64>>>()?;
             Some(Value::Bool(set.contains(&tuple)))
         }
     }
+}
+
+/// The value beside the first condition that holds, or the last. Where it is not known whether one holds, all that may
+/// come of it have to agree.
+fn chain<L>(
+    branches: &[(Expr<L>, Expr<L>)],
+    last: &Expr<L>,
+    leaf: &impl Fn(&L) -> Option<Value>,
+) -> Option<Value> {
+    let mut possible = None;
+    let mut agrees = |value: Value| *possible.get_or_insert(value) == value;
+    for (condition, value) in branches {
+        let holds = truth(condition, leaf);
+        if holds != Some(false) && !agrees(eval(value, leaf)?) {
+            return None;
+        }
+        if holds == Some(true) {
+            return possible;
+        }
+    }
+    eval(last, leaf).filter(|value| agrees(*value))
 }
 
 /// The value of a Boolean expression.

@@ -2,7 +2,7 @@
 
 use crate::eval::{eval, truth};
 use crate::report::{Error, Stop};
-use hyperplan_problem::{ActionId, Also, Expr, Leaf, StepLeaf, System, Type, Update, Value, VarId};
+use hyperplan_problem::{ActionId, Also, Expr, Leaf, StepLeaf, System, TransLeaf, Type, Update, Value, VarId};
 use rustc_hash::FxHashMap;
 use std::rc::Rc;
 use typed_index_collections::TiVec;
@@ -40,7 +40,7 @@ enum Liveness {
 #[derive(Debug)]
 struct Node {
     values: Rc<[Value]>,
-    labels: Rc<[bool]>,
+    labels: Rc<[Value]>,
     moves: Option<Rc<[Move]>>,
     liveness: Liveness,
     /// It can go at least so many steps ...
@@ -58,6 +58,9 @@ struct Step {
 
 /// How an expression gets its value.
 type ValueOf<'f, L> = dyn Fn(&Expr<L>) -> Result<Value, Stop> + 'f;
+
+/// The values that variables may get, each variable at most once.
+type Choices = Vec<(VarId, Vec<Value>)>;
 
 /// Actions that lead to the same values.
 type Target<'p> = (&'p [ActionId], Vec<Value>);
@@ -130,9 +133,8 @@ impl<'p> Graph<'p> {
         let mut labels = Vec::with_capacity(self.system.labels.len());
         // A label reads only labels before it.
         for label in &self.system.labels {
-            let holds = truth(&label.expr, &|l| read(&values, &labels, *l));
-            let holds = holds.ok_or_else(|| no_value(self.system))?;
-            labels.push(holds);
+            let value = eval(&label.expr, &|l| read(&values, &labels, *l));
+            labels.push(value.ok_or_else(|| no_value(self.system))?);
         }
         let id = self.nodes.push_and_get_key(Node {
             values: values.clone(),
@@ -153,6 +155,9 @@ impl<'p> Graph<'p> {
         }
         let mut moves = Vec::new();
         for (actions, target) in self.targets(state)? {
+            if !self.by_trans(state, &target)? {
+                continue;
+            }
             let to = self.intern(&target)?;
             moves.extend(actions.iter().map(|&action| Move { action, to }));
         }
@@ -179,6 +184,9 @@ impl<'p> Graph<'p> {
         let (here, there) = (&self.nodes[from].values, &self.nodes[to].values);
         if self.holds(from, &self.system.absorb)? {
             return Ok(self.system.actions.contains(&action) && here == there);
+        }
+        if !self.by_trans(from, there)? {
+            return Ok(false);
         }
         for clause in self.system.clauses.iter().filter(|c| c.actions.contains(&action)) {
             let step = Step { action, edge: None };
@@ -270,6 +278,24 @@ impl<'p> Graph<'p> {
         eval(e, &read).ok_or_else(|| no_value(self.system).into())
     }
 
+    /// Whether the step to these values, if they are of their variables' types, is one by `trans`. States that absorb do
+    /// not ask.
+    fn by_trans(&self, from: StateId, there: &[Value]) -> Result<bool, Stop> {
+        if self.system.trans.is_true() || self.holds(from, &self.system.absorb)? {
+            return Ok(true);
+        }
+        let mut labels = Vec::with_capacity(self.system.labels.len());
+        for label in &self.system.labels {
+            labels
+                .push(eval(&label.expr, &|l| read(there, &labels, *l)).ok_or_else(|| no_value(self.system))?);
+        }
+        let holds = truth(&self.system.trans, &|leaf| match *leaf {
+            TransLeaf::Before(leaf) => self.leaf(from, leaf),
+            TransLeaf::After(leaf) => read(there, &labels, leaf),
+        });
+        holds.ok_or_else(|| no_value(self.system).into())
+    }
+
     fn value(&self, state: StateId, e: &Expr<Leaf>) -> Result<Value, Stop> {
         eval(e, &|l| self.leaf(state, *l)).ok_or_else(|| no_value(self.system).into())
     }
@@ -295,17 +321,16 @@ impl<'p> Graph<'p> {
             if !self.holds(state, &clause.guard)? {
                 continue;
             }
-            let mut targets = vec![here.to_vec()];
-            for (var, update) in &clause.updates {
-                targets = self.extended(targets, *var, update, &|e| self.value(state, e))?;
-            }
+            let own = self.each(&clause.updates, &|e| self.value(state, e))?;
             if system.also.is_empty() {
+                let targets = self.chosen(state, own)?;
                 found.extend(targets.into_iter().map(|target| (clause.actions.as_slice(), target)));
                 continue;
             }
             for action in &clause.actions {
-                let step = Step { action: *action, edge: None };
-                let targets = self.besides(state, step, targets.clone())?;
+                let mut all = self.besides(state, Step { action: *action, edge: None })?;
+                all.extend(own.iter().cloned());
+                let targets = self.chosen(state, all)?;
                 found.extend(targets.into_iter().map(|target| (std::slice::from_ref(action), target)));
             }
         }
@@ -313,44 +338,84 @@ impl<'p> Graph<'p> {
         for ((at, edge), own) in
             edges.numbered(position(here, edges.var)).zip(edges.of(position(here, edges.var)))
         {
-            let moved = vec![with(here, edges.var, Value::Enum(edge.to))];
-            let targets = self.besides(state, Step { action: edge.action, edge: Some(at) }, moved)?;
+            let mut all = self.besides(state, Step { action: edge.action, edge: Some(at) })?;
+            all.push((edges.var, vec![Value::Enum(edge.to)]));
+            let targets = self.chosen(state, all)?;
             found.extend(targets.into_iter().map(|target| (std::slice::from_ref(&own.action), target)));
         }
         Ok(found)
     }
 
-    /// Targets with what a step to them does besides.
-    fn besides(&self, from: StateId, step: Step, targets: Vec<Vec<Value>>) -> Result<Vec<Vec<Value>>, Stop> {
-        let mut targets = targets;
+    /// What each of some updates allows.
+    fn each<L>(&self, updates: &[(VarId, Update<L>)], value: &ValueOf<'_, L>) -> Result<Choices, Stop> {
+        updates.iter().map(|(var, update)| Ok((*var, self.choices(*var, update, value)?))).collect()
+    }
+
+    /// What a step from a state does besides.
+    fn besides(&self, from: StateId, step: Step) -> Result<Choices, Stop> {
+        let mut all = Choices::new();
         for also in self.also_in(from, step.action)? {
-            for (var, update) in &also.updates {
-                targets = self.extended(targets, *var, update, &|e| self.step_value(from, step, e))?;
+            all.extend(self.each(&also.updates, &|e| self.step_value(from, step, e))?);
+        }
+        Ok(all)
+    }
+
+    /// Where a transition leads that makes these choices. What `trans` rules out is left out as soon as that is known.
+    fn chosen(&self, state: StateId, mut open: Choices) -> Result<Vec<Vec<Value>>, Stop> {
+        let here = &self.nodes[state].values;
+        let mut known: Vec<bool> = vec![true; here.len()];
+        for (var, _) in &open {
+            known[usize::from(*var)] = false;
+        }
+        open.sort_by_key(|(_, choices)| choices.len());
+        let mut targets = vec![here.to_vec()];
+        for (var, choices) in open {
+            known[usize::from(var)] = true;
+            let mut longer = Vec::new();
+            for target in &targets {
+                for &choice in &choices {
+                    let target = with(target, var, choice);
+                    if self.may_step(state, &target, &known) {
+                        longer.push(target);
+                    }
+                }
+                if longer.len() > self.limit {
+                    return Err(Stop::Budget);
+                }
             }
+            targets = longer;
         }
         Ok(targets)
     }
 
-    /// Targets with each of the values that an update allows.
-    fn extended<L>(
-        &self,
-        targets: Vec<Vec<Value>>,
-        var: VarId,
-        update: &Update<L>,
-        value: &ValueOf<'_, L>,
-    ) -> Result<Vec<Vec<Value>>, Stop> {
-        let choices = self.choices(var, update, value)?;
-        if targets.len().saturating_mul(choices.len()) > self.limit {
-            return Err(Stop::Budget);
+    /// Whether `trans` can hold of a step to these values, as far as they are known.
+    fn may_step(&self, from: StateId, there: &[Value], known: &[bool]) -> bool {
+        if self.system.trans.is_true() {
+            return true;
         }
-        let each = targets.iter().flat_map(|target| choices.iter().map(|&choice| with(target, var, choice)));
-        Ok(each.collect())
+        let there: Vec<Option<Value>> =
+            there.iter().zip(known).map(|(value, known)| known.then_some(*value)).collect();
+        let mut labels: Vec<Option<Value>> = Vec::with_capacity(self.system.labels.len());
+        let after = |labels: &[Option<Value>], leaf| match leaf {
+            Leaf::Var(v) => there.get(usize::from(v)).copied().flatten(),
+            Leaf::Label(l) => labels.get(usize::from(l)).copied().flatten(),
+        };
+        for label in &self.system.labels {
+            let value = eval(&label.expr, &|l| after(&labels, *l));
+            labels.push(value);
+        }
+        let holds = truth(&self.system.trans, &|leaf| match *leaf {
+            TransLeaf::Before(leaf) => self.leaf(from, leaf),
+            TransLeaf::After(leaf) => after(&labels, leaf),
+        });
+        holds != Some(false)
     }
 
     /// What an update allows, within the variable's type. Of real numbers there are too many between two.
     fn choices<L>(&self, var: VarId, update: &Update<L>, value: &ValueOf<'_, L>) -> Result<Vec<Value>, Stop> {
         let ty = &self.system.vars.get(var).ok_or_else(|| no_value(self.system))?.ty;
-        let mut values = match update {
+        let mut values = match applied(update, value)? {
+            Update::If(..) => Vec::new(),
             Update::Assign(e) => vec![value(e)?],
             Update::OneOf(es) => es.iter().map(value).collect::<Result<_, _>>()?,
             Update::Within(lo, hi) => match (ty, value(lo)?, value(hi)?) {
@@ -443,16 +508,31 @@ impl<'p> Graph<'p> {
     }
 }
 
-fn read(values: &[Value], labels: &[bool], leaf: Leaf) -> Option<Value> {
+fn read(values: &[Value], labels: &[Value], leaf: Leaf) -> Option<Value> {
     match leaf {
         Leaf::Var(v) => values.get(usize::from(v)).copied(),
-        Leaf::Label(l) => labels.get(usize::from(l)).copied().map(Value::Bool),
+        Leaf::Label(l) => labels.get(usize::from(l)).copied(),
     }
+}
+
+/// The part of an update that applies: beside the first of its conditions that holds.
+fn applied<'u, L>(mut update: &'u Update<L>, value: &ValueOf<'_, L>) -> Result<&'u Update<L>, Stop> {
+    'inside: while let Update::If(branches, last) = update {
+        for (condition, branch) in branches {
+            if value(condition)? == Value::Bool(true) {
+                update = branch;
+                continue 'inside;
+            }
+        }
+        update = last;
+    }
+    Ok(update)
 }
 
 /// Whether a variable may get this value of its type.
 fn may_become<L>(update: &Update<L>, new: Value, value: &ValueOf<'_, L>) -> Result<bool, Stop> {
-    match update {
+    match applied(update, value)? {
+        Update::If(..) => Ok(false),
         Update::Assign(e) => Ok(value(e)? == new),
         Update::OneOf(es) => {
             let values: Vec<Value> = es.iter().map(value).collect::<Result<_, _>>()?;

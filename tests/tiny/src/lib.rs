@@ -4,10 +4,11 @@
 
 use hyperplan_problem::{
     ActionId, Also, Expr, FormulaId, Interval, Leaf, NoFiles, Node, Objective, Overrides, PathId, PathLeaf,
-    Problem, State, StepLeaf, System, Trace, Update, Value, VarId, read,
+    Problem, State, StepLeaf, System, Trace, TransLeaf, Update, Value, VarId, read,
 };
 use hyperplan_syntax::SourceMap;
 use proptest::prelude::*;
+use std::convert::Infallible;
 
 /// The problem that a text describes.
 ///
@@ -36,23 +37,35 @@ pub fn system() -> impl Strategy<Value = String> {
         (0..3).prop_map(|n| format!("x' = {n}; b' = x == {n};")),
         (0..3).prop_map(|n| format!("x' in {{x, {n}}};")),
         (0..2).prop_map(|n| format!("x' in x - {n}..x + 1;")),
+        (0..3).prop_map(|n| format!("x' in if x < {n} then {{0, x + 1}} else if b then {{2}} else x..2;")),
+        (0..3).prop_map(|n| format!("b' in if x == {n} then {{true, false}} else {{b}};")),
     ];
     let actions = prop::sample::select(vec!["l", "r", "l | r"]);
     let clause = (actions, guard, update)
         .prop_map(|(actions, guard, update)| format!("on {actions} when {guard} {{ {update} }}"));
     let absorb = prop_oneof![Just(String::new()), Just("absorb x == 2;".to_owned())];
     let also = prop_oneof![
-        3 => Just(String::new()),
+        4 => Just(String::new()),
         1 => Just("also on * { n' = n - 1; }".to_owned()),
         1 => Just("also on l when b { n' in {0, n + 1}; } also on r | l when !b { n' in n - 1..x; }".to_owned()),
         1 => Just("also on r when x > 0 { n' = if action == r then x else 0; }".to_owned()),
+        1 => Just("also on * { n' in if action == l & high then {0, 2} else if b then n..level else {x}; }".to_owned()),
     ];
-    (prop::collection::vec(clause, 1..6), absorb, also, 0..3).prop_map(|(clauses, absorb, also, init)| {
+    let trans = prop_oneof![
+        3 => Just(String::new()),
+        1 => (0..3).prop_map(|n| format!("trans x' != {n} | b;")),
+        1 => Just("trans high' -> x <= x' + 1; trans !b | b' | level' == 0;".to_owned()),
+    ];
+    let rules = (absorb, also, trans, any::<bool>());
+    (prop::collection::vec(clause, 1..6), rules, 0..3).prop_map(|(clauses, rules, init)| {
+        let (absorb, also, trans, counts) = rules;
         let clauses = clauses.join(" ");
         // A variable that only `also` changes is there where one does: it makes more states.
         let (more, n) = if also.is_empty() { ("", "") } else { (", n: 0..2", "& n == 1") };
+        let trans = if counts && !also.is_empty() { format!("{trans} trans n' >= n - 1 & n' <= x' + 1;") } else { trans };
         format!(
-            "system S {{ state x: 0..2, b: bool{more}; action l, r; init x <= {init} & !b{n}; {absorb} {clauses} {also} }}"
+            "system S {{ state x: 0..2, b: bool{more}; action l, r; label level = if b then 0 else 2 - x; \
+             label high = level > 1; init x <= {init} & !b{n}; {absorb} {trans} {clauses} {also} }}"
         )
     })
 }
@@ -125,6 +138,14 @@ pub fn transitions(system: &System, from: &State) -> Vec<(ActionId, State)> {
             found.extend(all.into_iter().map(|to| (action, to)));
         }
     }
+    let is_step = |to: &State| {
+        let holds = system.trans.evaluate(&mut |leaf| match *leaf {
+            TransLeaf::Before(leaf) => read_leaf(system, leaf, from),
+            TransLeaf::After(leaf) => read_leaf(system, leaf, to),
+        });
+        holds == Some(Value::Bool(true))
+    };
+    found.retain(|(_, to)| is_step(to));
     found.sort();
     found.dedup();
     found
@@ -148,7 +169,9 @@ fn extended<L>(
     update: &Update<L>,
     of: &dyn Fn(&Expr<L>) -> Value,
 ) -> Vec<State> {
+    let Ok(update) = update.in_state(&mut |c| Ok::<_, Infallible>(of(c) == Value::Bool(true)));
     let values: Vec<Value> = match update {
+        Update::If(..) => unreachable!("no conditions are left"),
         Update::Assign(e) => vec![of(e)],
         Update::OneOf(es) => es.iter().map(of).collect(),
         Update::Within(lo, hi) => match (of(lo), of(hi)) {

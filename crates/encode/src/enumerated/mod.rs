@@ -411,7 +411,7 @@ fn is_truth_value(system: &System, expr: &Expr<PathLeaf>) -> bool {
         | Expr::ToReal(_)
         | Expr::Div(..)
         | Expr::Mod(..) => false,
-        Expr::If(_, a, _) => is_truth_value(system, a),
+        Expr::If(_, last) => is_truth_value(system, last),
         Expr::Leaf(PathLeaf::State(_, leaf)) => is_truth(system, *leaf),
         Expr::Leaf(_) => true,
     }

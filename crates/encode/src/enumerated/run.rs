@@ -89,8 +89,5 @@ impl Leaves<PathLeaf> for OnRun<'_, '_, '_> {
 
 /// Whether a variable or label is a truth value rather than a number.
 pub(super) fn is_truth(system: &System, leaf: Leaf) -> bool {
-    match leaf {
-        Leaf::Var(v) => system.vars[v].ty == Type::Bool,
-        Leaf::Label(_) => true,
-    }
+    *system.leaf_type(leaf) == Type::Bool
 }

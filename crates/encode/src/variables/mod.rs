@@ -8,7 +8,7 @@ mod step;
 use crate::names::{Copies, Names};
 use crate::value::{Leaves, Val, is, same};
 use crate::writing::{Bound, Env, PathIx, Writer, Writing, all_of};
-use hyperplan_problem::{ActionId, Leaf, Mode, PathId, State, System, Trace};
+use hyperplan_problem::{ActionId, Leaf, Mode, Node, Objective, PathId, PathLeaf, State, System, Trace};
 use hyperplan_relevance::Error;
 use hyperplan_relevance::{Goal, Instance, Known, Move, Numbering, Relevant, Start, Task, cases, generalize};
 use hyperplan_smt::{Features, Model, Script, Term, Terms};
@@ -17,7 +17,7 @@ pub(crate) use path::Numbers;
 use path::{Builder, VariablePath, stuck_state};
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
-use step::{InState, enabled, halted};
+use step::{InState, enabled, halted, is_told};
 use typed_index_collections::TiVec;
 
 /// States written by variable.
@@ -54,6 +54,15 @@ impl<'a> ByVariable<'a> {
                 Some((_, same)) => same.clone(),
                 None => Arc::new(Rules::new(&task, path, graph.as_deref(), numbers)?),
             };
+            if !is_told(&own.commands, task.system(path)) && asks_what_is_possible(task.objective, path) {
+                let system = &task.system(path).name;
+                return Err(Error::TooLarge {
+                    what: format!(
+                        "choices that `trans` restricts in system {system}, where it matters whether a step is possible"
+                    ),
+                    limit: MAX_COMMANDS,
+                });
+            }
             rules.push(own);
         }
         Ok(ByVariable { task, numbers, graphs, rules })
@@ -64,6 +73,18 @@ impl<'a> ByVariable<'a> {
         let (numbers, horizon) = (self.numbers, self.task.horizon(path));
         Builder { path, names, commands, numbers, live: live.as_deref(), horizon }
     }
+}
+
+/// Whether the objective reads what a path could do, not only what it does.
+fn asks_what_is_possible(objective: &Objective, path: PathId) -> bool {
+    let mut asks = false;
+    for node in &objective.formula.nodes {
+        let Node::Atom(expr) = node else { continue };
+        expr.for_each_leaf(&mut |leaf| {
+            asks |= matches!(leaf, PathLeaf::Enabled(p, _) | PathLeaf::Halted(p) if *p == path);
+        });
+    }
+    asks
 }
 
 impl Rules {
@@ -201,6 +222,10 @@ impl Writer for ByVariable<'_> {
             return None;
         }
         let mut script = Script::new();
+        if !is_told(&self.rules[path].commands, self.task.system(path)) {
+            // Satisfiable: nothing is known.
+            return Some(script);
+        }
         let names = Names::new(&self.task, path, 0);
         stuck_state(&mut script, &self.builder(path, &names));
         Some(script)

@@ -44,11 +44,10 @@ impl Numbers {
         (count > 1).then_some(sort)
     }
 
-    /// Whether an update may leave a value of that type open: a solver for integers and reals then finds it.
+    /// Whether an update may leave a value of that type between two ends open, for the solver to find it.
     pub(super) fn leaves_open(self, ty: &Type) -> bool {
         match self {
-            Numbers::Bits => false,
-            Numbers::Integers => true,
+            Numbers::Bits | Numbers::Integers => true,
             Numbers::Reals => *ty == Type::Real,
         }
     }
@@ -389,7 +388,7 @@ fn one_of(terms: &mut Terms, value: &Val, range: RangeInclusive<i64>) -> Term {
 }
 
 /// A new value at its variable's width and bounds: a command that leaves them is not enabled.
-fn clip(terms: &mut Terms, value: &Val, ty: &Type) -> Val {
+pub(super) fn clip(terms: &mut Terms, value: &Val, ty: &Type) -> Val {
     let Some((lo, hi)) = bounds(ty) else { return value.clone() };
     match value {
         Val::Bits { .. } => Val::Bits { term: value.bits_of_width(terms, width(lo, hi)), lo, hi },

@@ -50,7 +50,7 @@ fn demand_of(system: &System) -> Result<(), Error> {
             demand_exact(&what, expr)?;
         }
     }
-    Ok(())
+    demand_exact(&what, &system.trans)
 }
 
 /// Refuses divisions that round.

@@ -1,25 +1,108 @@
 //! What the commands of a system ask and do, as terms over its variables.
 
+use super::path::clip;
 use crate::value::{Leaves, Val, compare, constant, equal, member_of, merge, same, translate};
-use hyperplan_problem::{Comparison, Expr, LabelMemo, Leaf, System, VarId};
+use hyperplan_problem::{Comparison, Expr, LabelMemo, Leaf, TransLeaf, System, Update, VarId};
 use hyperplan_smt::{Term, Terms};
 use hyperplan_space::{Command, Commands, Guard, Listed, NewValue, bounds};
 
-/// Whether a variable can get a value between two ends.
-type Between<'b> = &'b mut dyn FnMut(&mut Terms, &mut InState<'_>, VarId, &Expr<Leaf>, &Expr<Leaf>) -> Term;
+/// Whether a variable can get a value that an update allows.
+type Chosen<'b> = &'b mut dyn FnMut(&mut Terms, &mut InState<'_>, VarId, &Update) -> Term;
 
-/// For each command, whether it can be taken in a state, with some inputs.
+/// For each command, whether it can be taken in a state, with some inputs. Where there are inputs, and `trans` says
+/// something of them, that is not to be had without quantifiers; see [`is_told`].
 pub(super) fn enabled(commands: &Commands, terms: &mut Terms, system: &System, state: &[Val]) -> Vec<Term> {
-    each(commands, terms, system, state, &mut |terms, leaves, var, lo, hi| {
-        let lo = translate(terms, lo, leaves);
-        let hi = translate(terms, hi, leaves);
-        let mut parts = vec![compare(terms, Comparison::Le, lo.clone(), hi.clone())];
-        if let Some((least, most)) = bounds(&system.vars[var].ty) {
-            parts.push(compare(terms, Comparison::Le, lo, constant(most)));
-            parts.push(compare(terms, Comparison::Le, constant(least), hi));
+    let mut enabled = each(commands, terms, system, state, &mut |terms, leaves, var, update| {
+        let range = bounds(&system.vars[var].ty);
+        over_update(terms, leaves, update, &mut |terms, leaves, update| match update {
+            Applied::Values(es) => {
+                let inside: Vec<Term> = es
+                    .iter()
+                    .map(|e| {
+                        let value = translate(terms, e, leaves);
+                        within(terms, value, range)
+                    })
+                    .collect();
+                terms.or(&inside)
+            }
+            Applied::Between(lo, hi) => {
+                let (lo, hi) = (translate(terms, lo, leaves), translate(terms, hi, leaves));
+                let mut parts = vec![compare(terms, Comparison::Le, lo.clone(), hi.clone())];
+                if let Some((least, most)) = range {
+                    parts.push(compare(terms, Comparison::Le, lo, constant(most)));
+                    parts.push(compare(terms, Comparison::Le, constant(least), hi));
+                }
+                terms.and(&parts)
+            }
+        })
+    });
+    if is_told(commands, system) {
+        constrain(commands, terms, system, state, state, &mut enabled);
+    }
+    enabled
+}
+
+/// Whether [`enabled`] says all: not where `trans` may ask something of inputs.
+pub(super) fn is_told(commands: &Commands, system: &System) -> bool {
+    system.trans.is_true() || commands.inputs.is_empty()
+}
+
+/// Adds to each command that `trans` holds of its step.
+fn constrain(
+    commands: &Commands,
+    terms: &mut Terms,
+    system: &System,
+    state: &[Val],
+    inputs: &[Val],
+    enabled: &mut [Term],
+) {
+    if system.trans.is_true() {
+        return;
+    }
+    for (command, enabled) in commands.all.iter().zip(enabled) {
+        if matches!(command.guard, Guard::Absorbing) || *enabled == Term::FALSE {
+            continue;
         }
-        terms.and(&parts)
-    })
+        let vars = system.vars.iter_enumerated();
+        let next: Vec<Val> = vars
+            .map(|(var, declared)| {
+                let value = after(command, terms, system, var, state, inputs);
+                clip(terms, &value, &declared.ty)
+            })
+            .collect();
+        let mut step = InStep { before: InState::new(system, state), after: InState::new(system, &next) };
+        let holds = translate(terms, &system.trans, &mut step).truth();
+        *enabled = terms.and2(*enabled, holds);
+    }
+}
+
+/// What an update without conditions allows.
+enum Applied<'u> {
+    Values(&'u [Expr<Leaf>]),
+    Between(&'u Expr<Leaf>, &'u Expr<Leaf>),
+}
+
+/// What `f` says of what applies of an update.
+fn over_update(
+    terms: &mut Terms,
+    leaves: &mut InState<'_>,
+    update: &Update,
+    f: &mut dyn FnMut(&mut Terms, &mut InState<'_>, Applied<'_>) -> Term,
+) -> Term {
+    match update {
+        Update::Assign(e) => f(terms, leaves, Applied::Values(std::slice::from_ref(e))),
+        Update::OneOf(es) => f(terms, leaves, Applied::Values(es)),
+        Update::Within(lo, hi) => f(terms, leaves, Applied::Between(lo, hi)),
+        Update::If(branches, last) => {
+            let mut rest = over_update(terms, leaves, last, f);
+            for (condition, branch) in branches.iter().rev() {
+                let condition = translate(terms, condition, leaves).truth();
+                let branch = over_update(terms, leaves, branch, f);
+                rest = terms.ite(condition, branch, rest);
+            }
+            rest
+        }
+    }
 }
 
 /// For each command, whether it can be taken in a state with these inputs.
@@ -30,24 +113,40 @@ pub(super) fn enabled_with(
     state: &[Val],
     inputs: &[Val],
 ) -> Vec<Term> {
-    each(commands, terms, system, state, &mut |terms, leaves, var, lo, hi| {
-        let lo = translate(terms, lo, leaves);
-        let hi = translate(terms, hi, leaves);
-        let input = inputs[usize::from(var)].clone();
-        let above = compare(terms, Comparison::Le, lo, input.clone());
-        let below = compare(terms, Comparison::Le, input.clone(), hi);
-        let fits = within(terms, input, bounds(&system.vars[var].ty));
-        terms.and(&[above, below, fits])
-    })
+    let mut enabled = each(commands, terms, system, state, &mut |terms, leaves, var, update| {
+        let input = &inputs[usize::from(var)];
+        let fits = within(terms, input.clone(), bounds(&system.vars[var].ty));
+        let allowed = over_update(terms, leaves, update, &mut |terms, leaves, update| match update {
+            Applied::Values(es) => {
+                let equal: Vec<Term> = es
+                    .iter()
+                    .map(|e| {
+                        let value = translate(terms, e, leaves);
+                        same(terms, &value, input)
+                    })
+                    .collect();
+                terms.or(&equal)
+            }
+            Applied::Between(lo, hi) => {
+                let (lo, hi) = (translate(terms, lo, leaves), translate(terms, hi, leaves));
+                let above = compare(terms, Comparison::Le, lo, input.clone());
+                let below = compare(terms, Comparison::Le, input.clone(), hi);
+                terms.and2(above, below)
+            }
+        });
+        terms.and2(allowed, fits)
+    });
+    constrain(commands, terms, system, state, inputs, &mut enabled);
+    enabled
 }
 
-/// For each command, whether it can be taken in a state; `between` says whether a value in a range can.
+/// For each command, whether it can be taken in a state, but for `trans`; `chosen` says whether an input can be had.
 fn each(
     commands: &Commands,
     terms: &mut Terms,
     system: &System,
     state: &[Val],
-    between: Between<'_>,
+    chosen: Chosen<'_>,
 ) -> Vec<Term> {
     let mut leaves = InState::new(system, state);
     let absorbing = translate(terms, &system.absorb, &mut leaves).truth();
@@ -74,7 +173,7 @@ fn each(
                     parts.push(compare(terms, Comparison::Le, lo, value.clone()));
                     parts.push(compare(terms, Comparison::Le, value, hi));
                 }
-                NewValue::Between { lo, hi } => parts.push(between(terms, &mut leaves, *var, lo, hi)),
+                NewValue::Among(update) => parts.push(chosen(terms, &mut leaves, *var, update)),
             }
         }
         enabled.push(terms.and(&parts));
@@ -106,10 +205,11 @@ pub(super) fn halted(
                     let value = translate(terms, value, &mut leaves);
                     unchanged.push(same(terms, &value, here));
                 }
-                NewValue::Between { lo, hi } => {
-                    let (lo, hi) = (translate(terms, lo, &mut leaves), translate(terms, hi, &mut leaves));
+                NewValue::Among(update) => {
                     let range = bounds(&system.vars[*var].ty);
-                    unchanged.push(only(terms, here, &lo, &hi, range));
+                    unchanged.push(over_update(terms, &mut leaves, update, &mut |terms, leaves, update| {
+                        only(terms, leaves, here, update, range)
+                    }));
                 }
             }
         }
@@ -139,7 +239,7 @@ pub(super) fn after(
         Some((_, NewValue::Is(value) | NewValue::OneOf { value, .. })) => {
             translate(terms, value, &mut InState::new(system, state))
         }
-        Some((_, NewValue::Between { .. })) => inputs[at].clone(),
+        Some((_, NewValue::Among(_))) => inputs[at].clone(),
     }
 }
 
@@ -193,6 +293,25 @@ impl Leaves<Leaf> for InState<'_> {
     }
 }
 
+/// The leaves of what is said of a step.
+struct InStep<'a> {
+    before: InState<'a>,
+    after: InState<'a>,
+}
+
+impl Leaves<TransLeaf> for InStep<'_> {
+    fn leaf(&mut self, terms: &mut Terms, leaf: &TransLeaf) -> Val {
+        match leaf {
+            TransLeaf::Before(leaf) => self.before.leaf(terms, leaf),
+            TransLeaf::After(leaf) => self.after.leaf(terms, leaf),
+        }
+    }
+
+    fn whole(&mut self, _: &mut Terms, _: &Expr<TransLeaf>) -> Option<Val> {
+        None
+    }
+}
+
 /// The leaves of a label in a state, where the labels that it reads are known.
 struct Labelled<'a> {
     state: &'a [Val],
@@ -230,8 +349,29 @@ pub(super) fn within(terms: &mut Terms, value: Val, range: Option<(i64, i64)>) -
     }
 }
 
-/// Whether no value from `lo` to `hi` (some are) that is in the variable's range differs from the present one.
-fn only(terms: &mut Terms, here: &Val, lo: &Val, hi: &Val, range: Option<(i64, i64)>) -> Term {
+/// Whether no value that is allowed (some are) and in the variable's range differs from the present one.
+fn only(
+    terms: &mut Terms,
+    leaves: &mut InState<'_>,
+    here: &Val,
+    update: Applied<'_>,
+    range: Option<(i64, i64)>,
+) -> Term {
+    let (lo, hi) = match update {
+        Applied::Values(es) => {
+            let same: Vec<Term> = es
+                .iter()
+                .map(|e| {
+                    let value = translate(terms, e, leaves);
+                    let inside = within(terms, value.clone(), range);
+                    let same = same(terms, &value, here);
+                    terms.implies(inside, same)
+                })
+                .collect();
+            return terms.and(&same);
+        }
+        Applied::Between(lo, hi) => (translate(terms, lo, leaves), translate(terms, hi, leaves)),
+    };
     let mut none_below = vec![compare(terms, Comparison::Le, here.clone(), lo.clone())];
     let mut none_above = vec![compare(terms, Comparison::Le, hi.clone(), here.clone())];
     if let Some((least, most)) = range {

@@ -37,6 +37,11 @@ pub(super) fn lint(asker: &mut Asker<'_>, found: &mut Vec<Diagnostic>) {
             asker.leave_open(objective.formula.spans[tie.atom], &what);
             continue;
         }
+        if !system.trans.is_true() {
+            let what = format!("path {} can get stuck: system {} has `trans`", var.name, system.name);
+            asker.leave_open(objective.formula.spans[tie.atom], &what);
+            continue;
+        }
         found.extend(ask(asker, tie));
     }
 }
@@ -95,7 +100,7 @@ fn is_total(system: &System) -> bool {
 fn ask(asker: &mut Asker<'_>, tie: &Tie) -> Option<Diagnostic> {
     let objective = asker.objective;
     let original = &asker.problem.systems[objective.paths[tie.follower].system];
-    let (system, stuck) = total(original).ok()?;
+    let (system, stuck) = total(original);
     let mut problem = asker.problem.clone();
     let id = problem.systems.push_and_get_key(system);
     let formula = question(asker.problem, objective, tie, stuck);

@@ -1,7 +1,7 @@
 //! A system in which every action is possible everywhere: what the original cannot do leads to being *stuck*.
 
 use hyperplan_problem::{ActionId, Clause, Comparison, Expr, Leaf, System, Type, Update, Value, Var, VarId};
-use hyperplan_space::{TooLarge, Updates, besides, no_number};
+use hyperplan_space::{Updates, besides, no_number};
 
 /// The value of the new variable before anything impossible was tried.
 const FREE: i64 = 0;
@@ -11,10 +11,7 @@ pub(super) const JUST_STUCK: i64 = 1;
 const STUCK: i64 = 2;
 
 /// The system with a variable that says whether its path got stuck; the other variables then keep their values.
-///
-/// # Errors
-/// [`TooLarge`] if transitions do so much besides that there are too many ways to make them.
-pub(super) fn total(system: &System) -> Result<(System, VarId), TooLarge> {
+pub(super) fn total(system: &System) -> (System, VarId) {
     let mut total = system.clone();
     let span = system.span;
     let ty = Type::Range { lo: FREE, hi: STUCK };
@@ -25,7 +22,7 @@ pub(super) fn total(system: &System) -> Result<(System, VarId), TooLarge> {
     total.absorb = also_free(&system.absorb);
     total.clauses.clear();
     for &action in &system.actions {
-        for (guard, updates) in ways(system, action)? {
+        for (guard, updates) in ways(system, action) {
             let guard = also_free(&guard);
             total.clauses.push(Clause { actions: vec![action], guard, updates, span, generated: true });
         }
@@ -41,7 +38,7 @@ pub(super) fn total(system: &System) -> Result<(System, VarId), TooLarge> {
     let (guard, updates) = (Expr::Not(Box::new(free)), set(STUCK));
     let actions = system.actions.clone();
     total.clauses.push(Clause { actions, guard, updates, span, generated: true });
-    Ok((total, var))
+    (total, var)
 }
 
 /// That the new variable has this value.
@@ -57,27 +54,25 @@ fn at(var: VarId, position: u32) -> Expr<Leaf> {
 }
 
 /// The guards and updates of the transitions with an action, from states that do not absorb.
-fn ways(system: &System, action: ActionId) -> Result<Vec<(Expr<Leaf>, Updates)>, TooLarge> {
-    let mut ways = Vec::new();
-    let own = besides(system, action, &no_number)?;
-    for clause in system.clauses.iter().filter(|c| c.actions.contains(&action)) {
-        let with = |besides: &Updates| clause.updates.iter().chain(besides).cloned().collect();
-        ways.extend(own.iter().map(|besides| (clause.guard.clone(), with(besides))));
-    }
-    let Some(edges) = &system.edges else { return Ok(ways) };
+fn ways(system: &System, action: ActionId) -> Vec<(Expr<Leaf>, Updates)> {
+    let own = besides(system, action, &no_number);
+    let clauses = system.clauses.iter().filter(|c| c.actions.contains(&action));
+    let mut ways: Vec<(Expr<Leaf>, Updates)> = clauses
+        .map(|clause| (clause.guard.clone(), clause.updates.iter().chain(&own).cloned().collect()))
+        .collect();
+    let Some(edges) = &system.edges else { return ways };
     for (position, (from, edge)) in edges.iter().enumerate().filter(|(_, (_, edge))| edge.action == action) {
         let number = |attribute| Expr::Const(Value::Int(edges.number(position, attribute)));
-        for mut updates in besides(system, action, &number)? {
-            updates.push((edges.var, Update::Assign(Expr::Const(Value::Enum(edge.to)))));
-            ways.push((at(edges.var, from), updates));
-        }
+        let mut updates = besides(system, action, &number);
+        updates.push((edges.var, Update::Assign(Expr::Const(Value::Enum(edge.to)))));
+        ways.push((at(edges.var, from), updates));
     }
-    Ok(ways)
+    ways
 }
 
-/// Where a system that is not too large for [`total`] has a transition with that action.
+/// Where a system has a transition with that action.
 pub(super) fn enabled(system: &System, action: ActionId) -> Expr<Leaf> {
-    let ways = ways(system, action).unwrap_or_default();
+    let ways = ways(system, action);
     let mut ways: Vec<Expr<Leaf>> = ways.iter().map(|(guard, own)| possible(system, guard, own)).collect();
     ways.push(system.absorb.clone());
     Expr::Or(ways)
@@ -87,20 +82,37 @@ pub(super) fn enabled(system: &System, action: ActionId) -> Expr<Leaf> {
 fn possible(system: &System, guard: &Expr<Leaf>, updates: &Updates) -> Expr<Leaf> {
     let mut parts = vec![guard.clone()];
     for (var, update) in updates {
-        if let Update::Within(least, greatest) = update {
-            parts.push(at_most(least, greatest));
-        }
-        // Values of other types are never outside.
-        let Type::Range { lo, hi } = system.vars[*var].ty else { continue };
-        let (lo, hi) = (Expr::Const(Value::Int(lo)), Expr::Const(Value::Int(hi)));
-        let inside = |e: &Expr<Leaf>| Expr::And(vec![at_most(&lo, e), at_most(e, &hi)]);
-        parts.push(match update {
-            Update::Assign(e) => inside(e),
-            Update::OneOf(es) => Expr::Or(es.iter().map(inside).collect()),
-            Update::Within(least, greatest) => Expr::And(vec![at_most(least, &hi), at_most(&lo, greatest)]),
-        });
+        parts.push(has_value(&system.vars[*var].ty, update));
     }
     Expr::And(parts)
+}
+
+/// Where an update has a value in range.
+fn has_value(ty: &Type, update: &Update) -> Expr<Leaf> {
+    // Values of other types are never outside.
+    let ends = match ty {
+        Type::Range { lo, hi } => Some((Expr::Const(Value::Int(*lo)), Expr::Const(Value::Int(*hi)))),
+        _ => None,
+    };
+    let inside = |e: &Expr<Leaf>| match &ends {
+        Some((lo, hi)) => Expr::And(vec![at_most(lo, e), at_most(e, hi)]),
+        None => Expr::TRUE,
+    };
+    match update {
+        Update::Assign(e) => inside(e),
+        Update::OneOf(es) => Expr::Or(es.iter().map(inside).collect()),
+        Update::Within(least, greatest) => {
+            let mut parts = vec![at_most(least, greatest)];
+            if let Some((lo, hi)) = &ends {
+                parts.extend([at_most(least, hi), at_most(lo, greatest)]);
+            }
+            Expr::And(parts)
+        }
+        Update::If(branches, last) => {
+            let branches = branches.iter().map(|(c, branch)| (c.clone(), has_value(ty, branch)));
+            Expr::choice(branches, has_value(ty, last))
+        }
+    }
 }
 
 fn at_most(a: &Expr<Leaf>, b: &Expr<Leaf>) -> Expr<Leaf> {

@@ -338,6 +338,7 @@ mod tests {
             costs: ti_vec![],
             base: None,
             edges: None,
+            trans: Expr::TRUE,
             init: Expr::TRUE,
             labels: ti_vec![],
             absorb: Expr::FALSE,

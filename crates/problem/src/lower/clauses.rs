@@ -11,6 +11,7 @@ use crate::ids::{ActionId, VarId};
 use crate::system::{Clause, System, Update};
 use hyperplan_syntax::ast::{self, Ident, Set, UpdateValue};
 use hyperplan_syntax::{Diagnostic, Span};
+use rustc_hash::FxHashMap;
 
 /// A clause, or `None` after a message.
 pub(super) fn lower_clause(
@@ -81,11 +82,12 @@ pub(super) fn known_action(
 
 /// Refuses two updates of one variable.
 pub(super) fn repeated_update(cx: &mut StateContext, clause: &ast::Clause) -> Option<()> {
-    for (index, update) in clause.updates.iter().enumerate() {
-        if let Some(first) = clause.updates[..index].iter().find(|u| u.var.name == update.var.name) {
+    let mut seen = FxHashMap::default();
+    for update in &clause.updates {
+        if let Some(first) = seen.insert(update.var.name.as_str(), update.var.span) {
             let message = format!("a second update of `{}`", update.var.name);
             let diagnostic = Diagnostic::error("repeated-update", update.var.span, message);
-            return cx.error(diagnostic.with_related(first.var.span, "the first one"));
+            return cx.error(diagnostic.with_related(first, "the first one"));
         }
     }
     Some(())
@@ -121,21 +123,51 @@ pub(super) fn updated(cx: &mut StateContext, update: &ast::Update) -> Option<Var
 
 /// What becomes of a variable of that type.
 pub(super) fn new_value<C: Context>(cx: &mut C, value: &UpdateValue, ty: &Type) -> Option<Update<C::Leaf>> {
-    Some(match value {
-        UpdateValue::Assign(e) => Update::Assign(of_type(cx, e, ty)?),
-        UpdateValue::Choose(Set::List(members, span)) if members.is_empty() => {
-            return cx.error(Diagnostic::error("empty-set", *span, "the set is empty"));
+    match value {
+        UpdateValue::Assign(e) => Some(Update::Assign(of_type(cx, e, ty)?)),
+        UpdateValue::Choose(set) => chosen(cx, set, ty),
+    }
+}
+
+/// What an update chooses from. Recursion is bounded by the nesting of the set, which the parser bounds.
+fn chosen<C: Context>(cx: &mut C, set: &Set, ty: &Type) -> Option<Update<C::Leaf>> {
+    match set {
+        Set::List(members, span) if members.is_empty() => {
+            cx.error(Diagnostic::error("empty-set", *span, "the set is empty"))
         }
-        UpdateValue::Choose(Set::List(members, _)) => {
+        Set::List(members, _) => {
             let values: Vec<_> = members.iter().map(|m| of_type(cx, m, ty)).collect();
-            Update::OneOf(values.into_iter().collect::<Option<Vec<_>>>()?)
+            Some(Update::OneOf(values.into_iter().collect::<Option<Vec<_>>>()?))
         }
-        UpdateValue::Choose(Set::Range(lo, hi)) => within(cx, lo, hi, ty)?,
-        UpdateValue::Choose(Set::Enabled(_, span)) => {
+        Set::Range(lo, hi) => within(cx, lo, hi, ty),
+        Set::Enabled(_, span) => {
             let message = "`enabled[...]` is a set of actions, not of values";
-            return cx.error(Diagnostic::error("misplaced-path", *span, message));
+            cx.error(Diagnostic::error("misplaced-path", *span, message))
         }
-    })
+        Set::If(branches, last, _) => {
+            let lowered: Vec<_> =
+                branches.iter().map(|(c, set)| (truth(cx, c), chosen(cx, set, ty))).collect();
+            let last = chosen(cx, last, ty);
+            let lowered = lowered.into_iter().map(|(c, set)| c.zip(set)).collect::<Option<Vec<_>>>()?;
+            Some(conditional(lowered, last?))
+        }
+    }
+}
+
+/// Without the branches that constants rule out.
+fn conditional<L>(branches: Vec<(Expr<L>, Update<L>)>, last: Update<L>) -> Update<L> {
+    let mut kept = Vec::with_capacity(branches.len());
+    let mut last = last;
+    for (condition, update) in branches {
+        if condition.is_true() {
+            last = update;
+            break;
+        }
+        if !condition.is_false() {
+            kept.push((condition, update));
+        }
+    }
+    if kept.is_empty() { last } else { Update::If(kept, Box::new(last)) }
 }
 
 /// An expression of the variable's type.

@@ -29,6 +29,12 @@ pub(crate) trait Context {
     /// The message about a name that stands for nothing here.
     fn unknown(&mut self, name: &str, span: Span) -> Diagnostic;
 
+    /// `NAME'`
+    fn primed(&mut self, name: &str, span: Span) -> Option<Typed<Self::Leaf>> {
+        let message = format!("`{name}'` is the value after a step, and there is none here");
+        self.error(Diagnostic::error("misplaced-prime", span, message).with_help("primes belong to `trans`"))
+    }
+
     /// `NAME[PATHS]`
     fn at(&mut self, name: &Ident, paths: &[Ident], span: Span) -> Option<Typed<Self::Leaf>> {
         let _ = paths;
@@ -114,6 +120,7 @@ fn typed_inner<C: Context>(cx: &mut C, e: &ast::Expr, hint: Option<&EnumType>) -
         ExprKind::Bool(b) => Some(Typed::Bool(Expr::Const(Value::Bool(*b)))),
         ExprKind::Number(digits) => number(cx, digits, e.span),
         ExprKind::Name(name) => named(cx, name, e.span, hint),
+        ExprKind::Primed(name) => cx.primed(name, e.span),
         ExprKind::Text(name) => quoted(cx, name, e.span, hint),
         ExprKind::At(name, paths) => cx.at(name, paths, e.span),
         ExprKind::Cost(name, paths) => cx.cost(name, paths, e.span),
@@ -128,7 +135,7 @@ fn typed_inner<C: Context>(cx: &mut C, e: &ast::Expr, hint: Option<&EnumType>) -
         ExprKind::Sum(terms) => sum(cx, terms, e.span),
         ExprKind::Arith(op, a, b) => arith(cx, *op, a, b, e.span),
         ExprKind::In(element, set) => membership(cx, element, set, e.span),
-        ExprKind::If(c, a, b) => choice(cx, c, a, b, hint),
+        ExprKind::If(branches, last) => choice(cx, branches, last, hint),
         ExprKind::Tuple(_) => {
             let message = "a tuple can only stand to the left of `in` and in the set to its right";
             cx.error(Diagnostic::error("misplaced-tuple", e.span, message))
@@ -297,7 +304,9 @@ fn wants_hint<C: Context>(cx: &C, e: &ast::Expr) -> bool {
     match &e.kind {
         ExprKind::Name(name) => cx.is_enum_value(name),
         ExprKind::Text(_) => true,
-        ExprKind::If(_, a, b) => wants_hint(cx, a) || wants_hint(cx, b),
+        ExprKind::If(branches, last) => {
+            branches.iter().map(|(_, value)| value).chain([&**last]).any(|value| wants_hint(cx, value))
+        }
         _ => false,
     }
 }
@@ -524,37 +533,82 @@ fn known_real<L>(e: &Expr<L>) -> Option<Rational> {
 #[inline(never)]
 fn choice<C: Context>(
     cx: &mut C,
-    condition: &ast::Expr,
-    then: &ast::Expr,
-    otherwise: &ast::Expr,
+    branches: &[(ast::Expr, ast::Expr)],
+    last: &ast::Expr,
     hint: Option<&EnumType>,
 ) -> Option<Typed<C::Leaf>> {
-    let c = truth(cx, condition);
-    let cases = operands(cx, then, otherwise, hint);
-    chosen(cx, c?, cases?, then.span.to(otherwise.span))
+    let mut conditions = Vec::with_capacity(branches.len());
+    for (condition, _) in branches {
+        conditions.push(truth(cx, condition));
+    }
+    let values = values(cx, branches, last, hint);
+    let conditions = conditions.into_iter().collect::<Option<Vec<_>>>()?;
+    chosen(cx, conditions, values?, branches, last)
+}
+
+/// The values of a choice, the last one at the end. Those that stand on their own come first: they may say of which
+/// enumeration the others are.
+#[inline(never)]
+fn values<C: Context>(
+    cx: &mut C,
+    branches: &[(ast::Expr, ast::Expr)],
+    last: &ast::Expr,
+    hint: Option<&EnumType>,
+) -> Option<Vec<Typed<C::Leaf>>> {
+    let all: Vec<&ast::Expr> = branches.iter().map(|(_, value)| value).chain([last]).collect();
+    let mut found: Vec<Option<Typed<C::Leaf>>> = Vec::with_capacity(all.len());
+    found.resize_with(all.len(), || None);
+    let (mut hint, mut refused) = (hint.cloned(), false);
+    let waits: Vec<bool> = all.iter().map(|value| hint.is_none() && wants_hint(cx, value)).collect();
+    for second in [false, true] {
+        // Without a hint after one that was refused, nothing can be said of the others.
+        if second && refused && hint.is_none() {
+            return None;
+        }
+        for (at, value) in all.iter().enumerate().filter(|(at, _)| waits[*at] == second) {
+            found[at] = typed(cx, value, hint.as_ref());
+            refused |= found[at].is_none();
+            hint = hint.or_else(|| found[at].as_ref()?.enumeration().cloned());
+        }
+    }
+    found.into_iter().collect()
 }
 
 /// Not a part of [`choice`], to keep its frame small.
 #[inline(never)]
 fn chosen<C: Context>(
     cx: &mut C,
-    c: Expr<C::Leaf>,
-    cases: Pair<C::Leaf>,
-    span: Span,
+    conditions: Vec<Expr<C::Leaf>>,
+    mut values: Vec<Typed<C::Leaf>>,
+    branches: &[(ast::Expr, ast::Expr)],
+    last: &ast::Expr,
 ) -> Option<Typed<C::Leaf>> {
-    Some(match cases {
-        (Typed::Bool(a), Typed::Bool(b)) => Typed::Bool(typed::choice(c, a, b)),
-        (Typed::Int(a, ab), Typed::Int(b, bb)) => {
-            Typed::Int(typed::choice(c, a, b), ab.zip(bb).map(|(a, b)| a.hull(b)))
-        }
-        (a @ (Typed::Int(..) | Typed::Real(_)), b @ (Typed::Int(..) | Typed::Real(_))) => {
-            let (a, b) = as_real(a).zip(as_real(b)).or_else(|| overflow(cx, span))?;
-            Typed::Real(typed::choice(c, a, b))
-        }
-        (Typed::Enum(a, t), Typed::Enum(b, u)) if t == u => Typed::Enum(typed::choice(c, a, b), t),
-        (a, b) => {
-            let message = format!("one case is {}, the other {}", a.describe(), b.describe());
-            return cx.error(Diagnostic::error("type-mismatch", span, message));
-        }
+    let mut whole = values.pop()?;
+    let mut kept = Vec::with_capacity(values.len());
+    let reals = values.iter().chain([&whole]).any(|value| matches!(value, Typed::Real(_)));
+    for (value, (_, place)) in values.into_iter().zip(branches) {
+        let (value, joined) = match (value, whole) {
+            (Typed::Bool(a), Typed::Bool(b)) => (a, Typed::Bool(b)),
+            (a @ (Typed::Int(..) | Typed::Real(_)), b @ (Typed::Int(..) | Typed::Real(_))) if reals => {
+                let (a, b) = as_real(a).zip(as_real(b)).or_else(|| overflow(cx, place.span))?;
+                (a, Typed::Real(b))
+            }
+            (Typed::Int(a, ab), Typed::Int(b, bb)) => (a, Typed::Int(b, ab.zip(bb).map(|(a, b)| a.hull(b)))),
+            (Typed::Enum(a, t), Typed::Enum(b, u)) if t == u => (a, Typed::Enum(b, u)),
+            (a, b) => {
+                let message = format!("one case is {}, the other {}", a.describe(), b.describe());
+                let span = place.span.to(last.span);
+                return cx.error(Diagnostic::error("type-mismatch", span, message));
+            }
+        };
+        kept.push(value);
+        whole = joined;
+    }
+    let kept = conditions.into_iter().zip(kept);
+    Some(match whole {
+        Typed::Bool(last) => Typed::Bool(Expr::choice(kept, last)),
+        Typed::Int(last, bounds) => Typed::Int(Expr::choice(kept, last), bounds),
+        Typed::Real(last) => Typed::Real(Expr::choice(kept, last)),
+        Typed::Enum(last, values) => Typed::Enum(Expr::choice(kept, last), values),
     })
 }

@@ -48,8 +48,10 @@ impl<'a> PathContext<'a> {
                 let (a, b) = self.pair(a, b)?;
                 Node::Not(self.formula.push(Node::Iff(a, b), e.span))
             }
-            ExprKind::If(c, a, b) if self.either_formula(a, b) || self.is_formula(c) => {
-                return self.choice(c, a, b, e.span);
+            ExprKind::If(branches, last)
+                if self.is_formula(last) || branches.iter().any(|(c, a)| self.either_formula(c, a)) =>
+            {
+                return self.choice(branches, last, e.span);
             }
             ExprKind::Call(name, args) => {
                 return self.expand(name, args, e.span, |cx, body| cx.formula(body));
@@ -83,21 +85,23 @@ impl<'a> PathContext<'a> {
         a.zip(b)
     }
 
-    /// `if c then a else b` over formulas: `(c & a) | (!c & b)`.
+    /// `if c then a else b` over formulas: `(c & a) | (!c & b)`, from the end of the chain.
     fn choice(
         &mut self,
-        c: &'a ast::Expr,
-        a: &'a ast::Expr,
-        b: &'a ast::Expr,
+        branches: &'a [(ast::Expr, ast::Expr)],
+        last: &'a ast::Expr,
         span: Span,
     ) -> Option<FormulaId> {
-        let condition = self.formula(c);
-        let (a, b) = self.pair(a, b)?;
-        let condition = condition?;
-        let negated = self.formula.push(Node::Not(condition), c.span);
-        let then = self.formula.push(Node::And(vec![condition, a]), span);
-        let otherwise = self.formula.push(Node::And(vec![negated, b]), span);
-        Some(self.formula.push(Node::Or(vec![then, otherwise]), span))
+        let lowered: Vec<_> = branches.iter().map(|(c, a)| self.pair(c, a)).collect();
+        let mut rest = self.formula(last)?;
+        let lowered: Vec<_> = lowered.into_iter().collect::<Option<_>>()?;
+        for ((condition, value), (c, _)) in lowered.into_iter().zip(branches).rev() {
+            let negated = self.formula.push(Node::Not(condition), c.span);
+            let then = self.formula.push(Node::And(vec![condition, value]), span);
+            let otherwise = self.formula.push(Node::And(vec![negated, rest]), span);
+            rest = self.formula.push(Node::Or(vec![then, otherwise]), span);
+        }
+        Some(rest)
     }
 
     /// A Boolean expression without temporal operators.
@@ -145,7 +149,9 @@ impl<'a> PathContext<'a> {
                 | ExprKind::Iff(..)
                 | ExprKind::Unary(..)
                 | ExprKind::Binary(..) => return true,
-                ExprKind::If(c, a, b) => stack.extend([&**c, a, b]),
+                ExprKind::If(branches, last) => {
+                    stack.extend(branches.iter().flat_map(|(c, a)| [c, a]).chain([&**last]));
+                }
                 ExprKind::Call(name, _) => {
                     stack.extend(self.defines.get(name.name.as_str()).map(|(define, _)| &define.body));
                 }

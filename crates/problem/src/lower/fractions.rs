@@ -24,7 +24,7 @@ fn reads_reals<L>(e: &Expr<L>) -> bool {
         Expr::Leaf(_) => true,
         Expr::Add(es) => es.iter().any(reads_reals),
         Expr::Scale(_, a) => reads_reals(a),
-        Expr::If(_, a, b) => reads_reals(a) || reads_reals(b),
+        Expr::If(branches, last) => branches.iter().any(|(_, a)| reads_reals(a)) || reads_reals(last),
         _ => false,
     }
 }
@@ -36,7 +36,9 @@ fn denominator<L>(e: &Expr<L>) -> Option<i64> {
         Expr::Const(Value::Real(r)) => fits(*r.denom()),
         Expr::Add(es) => es.iter().try_fold(1, |lcm: i64, e| common(lcm, denominator(e)?)),
         Expr::Scale(c, a) => denominator(a)?.checked_mul(*c.denom()).and_then(fits),
-        Expr::If(_, a, b) => common(denominator(a)?, denominator(b)?),
+        Expr::If(branches, last) => {
+            branches.iter().try_fold(denominator(last)?, |lcm, (_, a)| common(lcm, denominator(a)?))
+        }
         _ => Some(1),
     }
 }
@@ -62,10 +64,15 @@ fn multiple<L: Clone>(e: &Expr<L>, factor: Rational) -> Option<Bounded<L>> {
         }
         Expr::Add(es) => make::sum(es.iter().map(|e| multiple(e, factor)).collect::<Option<_>>()?),
         Expr::Scale(c, a) => multiple(a, factor.checked_mul(c)?),
-        Expr::If(c, a, b) => {
-            let ((a, a_bounds), (b, b_bounds)) = (multiple(a, factor)?, multiple(b, factor)?);
-            let bounds = a_bounds.zip(b_bounds).map(|(a, b)| a.hull(b));
-            Some((make::choice((**c).clone(), a, b), bounds))
+        Expr::If(branches, last) => {
+            let (last, mut bounds) = multiple(last, factor)?;
+            let mut scaled = Vec::with_capacity(branches.len());
+            for (condition, value) in branches {
+                let (value, own) = multiple(value, factor)?;
+                bounds = bounds.zip(own).map(|(all, own)| all.hull(own));
+                scaled.push((condition.clone(), value));
+            }
+            Some((Expr::choice(scaled, last), bounds))
         }
         _ => None,
     }

@@ -521,7 +521,7 @@ impl Reader<'_, '_> {
                 self.error(Diagnostic::error("bad-graph", span, message).with_help(help));
                 continue;
             }
-            labels.push(Label { name: text, expr: one_of(known), nested: false, span });
+            labels.push(Label { name: text, expr: one_of(known), ty: Type::Bool, nested: false, span });
         }
         labels
     }

@@ -3,10 +3,31 @@
 use super::diagnostics::Diagnostics;
 use super::order;
 use super::typed::labels_read;
-use crate::expr::{Expr, Leaf};
+use super::walk::visit;
+use crate::expr::{Expr, Leaf, Type};
 use crate::ids::LabelId;
 use crate::system::Label;
+use hyperplan_syntax::ast::{self, ExprKind};
 use hyperplan_syntax::{Diagnostic, Span};
+use rustc_hash::FxHashMap;
+
+/// The order in which labels are typed: each after those that it reads, as far as that is possible. `names` tells
+/// labels by name.
+pub(super) fn typing_order(bodies: &[&ast::Expr], names: &FxHashMap<&str, usize>) -> Vec<usize> {
+    let reads = |body: &&ast::Expr| {
+        let mut read = Vec::new();
+        visit(body, &mut |e| {
+            if let ExprKind::Name(name) = &e.kind {
+                read.extend(names.get(name.as_str()));
+            }
+        });
+        read.sort_unstable();
+        read.dedup();
+        read
+    };
+    let order = order::sort(&bodies.iter().map(reads).collect::<Vec<_>>());
+    order.sorted.into_iter().chain(order.stuck).collect()
+}
 
 /// Sorts labels that were numbered in order of declaration. Gives them in their new order, and each old number's
 /// new one. Labels that read themselves, directly or not, are reported and hold nowhere.
@@ -22,6 +43,7 @@ pub(super) fn sort(mut labels: Vec<Label>, diagnostics: &mut Diagnostics) -> (Ve
     }
     for label in &order.stuck {
         labels[*label].expr = Expr::FALSE;
+        labels[*label].ty = Type::Bool;
         labels[*label].nested = false;
     }
     let order: Vec<usize> = order.sorted.into_iter().chain(order.stuck).collect();
@@ -45,6 +67,7 @@ fn reorder(labels: Vec<Label>, order: &[usize], new: &[LabelId]) -> Vec<Label> {
         Label {
             name: label.name.clone(),
             expr: label.expr.map(&mut renumber),
+            ty: label.ty.clone(),
             nested: label.nested,
             span: label.span,
         }

@@ -92,7 +92,7 @@ impl<'a> PathContext<'a> {
             return Some(Typed::of_type(leaf(Leaf::Var(var)), &system.vars[var].ty));
         }
         if let Some(label) = system.label(name) {
-            return Some(Typed::Bool(leaf(Leaf::Label(label))));
+            return Some(Typed::of_type(leaf(Leaf::Label(label)), &system.labels[label].ty));
         }
         if self.poisoned[self.paths[path].system] {
             return None;

@@ -28,6 +28,11 @@ pub(crate) fn membership<C: Context>(
             let help = "write `ACTION in enabled[PATH]`, in an objective";
             cx.error(Diagnostic::error("misplaced-path", *place, message).with_help(help))
         }
+        Set::If(_, _, place) => {
+            let message = "a set with conditions is what an update chooses from";
+            let help = "write `if C then x in {1, 2} else x == 0`";
+            cx.error(Diagnostic::error("misplaced-set", *place, message).with_help(help))
+        }
         Set::Range(lo, hi) => in_range(cx, element, lo, hi, span),
         Set::List(members, place) if members.is_empty() => {
             cx.error(Diagnostic::error("empty-set", *place, "the set is empty"))

@@ -62,18 +62,11 @@ impl Context for StepContext<'_, '_> {
     }
 
     fn resolve(&mut self, name: &str) -> Option<Option<Typed<StepLeaf>>> {
-        let of_state = |e: Expr<_>| e.map(&mut |leaf| StepLeaf::State(*leaf));
         if let Some(attribute) = self.attribute(name) {
             return Some(Some(attribute));
         }
-        self.state.resolve(name).map(|typed| {
-            typed.map(|typed| match typed {
-                Typed::Bool(e) => Typed::Bool(of_state(e)),
-                Typed::Int(e, bounds) => Typed::Int(of_state(e), bounds),
-                Typed::Real(e) => Typed::Real(of_state(e)),
-                Typed::Enum(e, values) => Typed::Enum(of_state(e), values),
-            })
-        })
+        let meant = self.state.resolve(name)?;
+        Some(meant.map(|typed| typed.map(&mut |leaf| StepLeaf::State(*leaf))))
     }
 
     fn is_enum_value(&self, name: &str) -> bool {

@@ -7,14 +7,14 @@ use super::env::Env;
 use super::expr::{Context, truth, typed};
 use super::labels;
 use super::limits::{Limits, MAX_RANGE};
-use super::state::{Names, StateContext};
-use super::typed::{Typed, and, or};
+use super::state::{Names, StateContext, TransContext};
+use super::typed::{EnumType, and, or};
 use super::{also, costs, graphs, maps};
 use crate::edges::Edges;
 use crate::expr::{Expr, Leaf, Type};
 use crate::ids::{ActionId, LabelId, VarId};
 use crate::system::{Label, System, Var};
-use hyperplan_syntax::ast::{self, Ident, SystemItem, SystemKind};
+use hyperplan_syntax::ast::{self, ExprKind, Ident, SystemItem, SystemKind};
 use hyperplan_syntax::{Diagnostic, Span};
 use rustc_hash::FxHashMap;
 use typed_index_collections::TiVec;
@@ -30,6 +30,7 @@ pub(crate) fn lower_system(ast: &ast::System, env: &mut Env) -> (System, bool) {
         diagnostics: env.diagnostics,
         names: Names::default(),
         vars: base.vars,
+        label_types: vec![Type::Bool; base.labels.len()],
         system: ast.name.name.clone(),
         poisoned: base.poisoned,
         limits: Limits::default(),
@@ -48,6 +49,7 @@ pub(crate) fn lower_system(ast: &ast::System, env: &mut Env) -> (System, bool) {
         costs: TiVec::new(),
         base: None,
         edges: base.edges,
+        trans: Expr::TRUE,
         init: base.init,
         labels: labels.into_iter().collect(),
         absorb: base.absorb,
@@ -214,20 +216,63 @@ fn lower_labels(cx: &mut StateContext, ast: &ast::System, mut labels: Vec<Label>
             bodies.push((name, body));
         } else {
             // Its expression may be wrong on its own account.
-            truth(cx, body);
+            typed(cx, body, None);
         }
     }
-    for (name, body) in bodies {
-        let expr = truth(cx, body).unwrap_or(Expr::FALSE);
-        labels.push(Label { name: name.name.clone(), expr, nested: false, span: name.span });
+    let own = labels.len();
+    let names =
+        (0..).zip(&bodies).map(|(at, (name, _)): (usize, &(&Ident, &ast::Expr))| (name.name.as_str(), at));
+    let names: FxHashMap<&str, usize> = names.collect();
+    let exprs: Vec<&ast::Expr> = bodies.iter().map(|(_, body)| *body).collect();
+    for (name, _) in &bodies {
+        let (name, span) = (name.name.clone(), name.span);
+        labels.push(Label { name, expr: Expr::FALSE, ty: Type::Bool, nested: false, span });
+    }
+    cx.label_types.resize(labels.len(), Type::Bool);
+    for at in labels::typing_order(&exprs, &names) {
+        let hint = only_enumeration(cx, exprs[at]);
+        let Some(found) = typed(cx, exprs[at], hint.as_ref()) else { continue };
+        let (expr, ty) = found.into_parts();
+        if ty == Type::Real {
+            let message = "a label is a truth value, an integer, or one of an enumeration";
+            cx.diagnostics.push(Diagnostic::error("type-mismatch", exprs[at].span, message));
+            continue;
+        }
+        cx.label_types[own + at] = ty.clone();
+        labels[own + at] = Label { expr, ty, ..labels[own + at].clone() };
     }
     let (labels, new) = labels::sort(labels, cx.diagnostics);
+    cx.label_types = labels.iter().map(|label| label.ty.clone()).collect();
     for (leaf, _) in cx.names.values_mut() {
         if let Leaf::Label(id) = leaf {
             *id = new[usize::from(*id)];
         }
     }
     labels
+}
+
+/// The enumeration of an expression all of whose values are names of some: the only one that has all of them.
+fn only_enumeration(cx: &StateContext, e: &ast::Expr) -> Option<EnumType> {
+    let mut values = Vec::new();
+    let mut stack = vec![e];
+    while let Some(e) = stack.pop() {
+        match &e.kind {
+            ExprKind::If(branches, last) => {
+                stack.extend(branches.iter().map(|(_, value)| value).chain([&**last]));
+            }
+            ExprKind::Name(name) if !cx.names.contains_key(name) => values.push(name),
+            ExprKind::Text(name) => values.push(name),
+            _ => return None,
+        }
+    }
+    let has_all = |of: &EnumType| values.iter().all(|value| of.contains(value));
+    let enumerations = cx.vars.iter().filter_map(|var| match &var.ty {
+        Type::Enum(of) => Some(of),
+        _ => None,
+    });
+    let mut fitting = enumerations.filter(|of| has_all(of));
+    let first = fitting.next()?;
+    fitting.all(|other| other == first).then(|| first.clone())
 }
 
 fn lower_item(
@@ -252,11 +297,16 @@ fn lower_item(
                 system.absorb = or([std::mem::replace(&mut system.absorb, Expr::FALSE), e]);
             }
         }
+        SystemItem::Trans(e) => {
+            let mut step = TransContext::new(cx);
+            if let Some(e) = truth(&mut step, e) {
+                system.trans = and([std::mem::replace(&mut system.trans, Expr::TRUE), e]);
+            }
+        }
         SystemItem::Observe(es) => {
             for e in es {
                 let Some(typed) = typed(cx, e, None) else { continue };
-                let (Typed::Bool(e) | Typed::Int(e, _) | Typed::Real(e) | Typed::Enum(e, _)) = typed;
-                system.observe.push(e);
+                system.observe.push(typed.into_parts().0);
             }
         }
         SystemItem::Moves(names) => only_maps(cx, kind, "moves", names.first()),

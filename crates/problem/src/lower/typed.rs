@@ -85,6 +85,27 @@ impl<L> Typed<L> {
         }
     }
 
+    /// The same over other leaves.
+    pub(crate) fn map<M>(&self, f: &mut impl FnMut(&L) -> M) -> Typed<M> {
+        match self {
+            Typed::Bool(e) => Typed::Bool(e.map(f)),
+            Typed::Int(e, bounds) => Typed::Int(e.map(f), *bounds),
+            Typed::Real(e) => Typed::Real(e.map(f)),
+            Typed::Enum(e, values) => Typed::Enum(e.map(f), values.clone()),
+        }
+    }
+
+    /// The expression, and its type with the bounds that it cannot leave.
+    pub(crate) fn into_parts(self) -> (Expr<L>, Type) {
+        match self {
+            Typed::Bool(e) => (e, Type::Bool),
+            Typed::Int(e, Some(Bounds { lo, hi })) => (e, Type::Range { lo, hi }),
+            Typed::Int(e, None) => (e, Type::Int),
+            Typed::Real(e) => (e, Type::Real),
+            Typed::Enum(e, values) => (e, Type::Enum(values)),
+        }
+    }
+
     /// How messages call its type.
     pub(crate) fn describe(&self) -> String {
         match self {
@@ -184,15 +205,6 @@ pub(crate) fn compare<L>(op: Comparison, a: Expr<L>, b: Expr<L>) -> Expr<L> {
         return Expr::Const(Value::Bool(op.holds(*a, *b)));
     }
     Expr::Compare(op, Box::new(a), Box::new(b))
-}
-
-/// A choice between two expressions of one type.
-pub(crate) fn choice<L>(condition: Expr<L>, then: Expr<L>, otherwise: Expr<L>) -> Expr<L> {
-    match known_bool(&condition) {
-        Some(true) => then,
-        Some(false) => otherwise,
-        None => Expr::If(Box::new(condition), Box::new(then), Box::new(otherwise)),
-    }
 }
 
 /// A sum of integers, `None` where it may leave the limit. Every partial sum stays within it too. Without bounds, of

@@ -13,7 +13,7 @@ pub(super) fn retyped<L>(system: &System, e: &Expr<Leaf>, read: Expr<L>) -> Type
 /// The type, as far as it matters; an enumeration without values where only a constant is left.
 fn type_of(system: &System, e: &Expr<Leaf>) -> Type {
     match e {
-        Expr::Leaf(Leaf::Var(id)) => match &system.vars[*id].ty {
+        Expr::Leaf(leaf) => match system.leaf_type(*leaf) {
             Type::Range { .. } => Type::Int,
             ty => ty.clone(),
         },
@@ -22,12 +22,12 @@ fn type_of(system: &System, e: &Expr<Leaf>) -> Type {
         // All summands are of one type.
         Expr::Add(es) => es.first().map_or(Type::Int, |e| type_of(system, e)),
         Expr::Const(Value::Enum(_)) => Type::Enum(EnumType::default()),
-        Expr::If(_, a, b) => match type_of(system, a) {
-            Type::Enum(values) if values.is_empty() => type_of(system, b),
-            known => known,
-        },
+        Expr::If(branches, last) => {
+            let mut types = branches.iter().map(|(_, value)| type_of(system, value));
+            let open = |ty: &Type| matches!(ty, Type::Enum(values) if values.is_empty());
+            types.find(|ty| !open(ty)).unwrap_or_else(|| type_of(system, last))
+        }
         Expr::Const(Value::Bool(_))
-        | Expr::Leaf(Leaf::Label(_))
         | Expr::Not(_)
         | Expr::And(_)
         | Expr::Or(_)

@@ -3,10 +3,10 @@
 //! Uses are by name: a label of one system counts as used if any system, objective or template names it so, which
 //! misses some unused labels and blames no used one. Labels that a map's letters declare are not asked about.
 
-use super::walk::visit;
+use super::walk::{visit, visit_set};
 use hyperplan_syntax::Diagnostic;
 use hyperplan_syntax::ast::{
-    Expr, ExprKind, File, Formula, Ident, Item, Objective, ObjectiveBody, Set, SystemItem, Template, Type,
+    Expr, ExprKind, File, Formula, Ident, Item, Objective, ObjectiveBody, SystemItem, Template, Type,
     UpdateValue,
 };
 use rustc_hash::FxHashSet;
@@ -126,16 +126,15 @@ impl<'a> Uses<'a> {
                 for update in &clause.updates {
                     match &update.value {
                         UpdateValue::Assign(e) => self.exprs([e]),
-                        UpdateValue::Choose(Set::List(es, _)) => self.exprs(es),
-                        UpdateValue::Choose(Set::Range(lo, hi)) => self.exprs([&**lo, hi]),
-                        UpdateValue::Choose(Set::Enabled(..)) => {}
+                        UpdateValue::Choose(set) => visit_set(set, &mut |e| self.name(e)),
                     }
                 }
             }
             SystemItem::Init(e)
             | SystemItem::Label(_, e)
             | SystemItem::Cost(_, e)
-            | SystemItem::Absorb(e) => self.exprs([e]),
+            | SystemItem::Absorb(e)
+            | SystemItem::Trans(e) => self.exprs([e]),
             SystemItem::Observe(es) => self.exprs(es),
             SystemItem::Map { item, .. } => self.exprs(item.exprs()),
             _ => {}
@@ -144,11 +143,15 @@ impl<'a> Uses<'a> {
 
     fn exprs(&mut self, es: impl IntoIterator<Item = &'a Expr>) {
         for e in es {
-            visit(e, &mut |e| match &e.kind {
-                ExprKind::Name(name) => drop(self.names.insert(name)),
-                ExprKind::At(name, _) | ExprKind::Call(name, _) => drop(self.names.insert(&name.name)),
-                _ => {}
-            });
+            visit(e, &mut |e| self.name(e));
+        }
+    }
+
+    fn name(&mut self, e: &'a Expr) {
+        match &e.kind {
+            ExprKind::Name(name) | ExprKind::Primed(name) => drop(self.names.insert(name)),
+            ExprKind::At(name, _) | ExprKind::Call(name, _) => drop(self.names.insert(&name.name)),
+            _ => {}
         }
     }
 }

@@ -88,7 +88,7 @@ impl Parser<'_> {
     }
 
     #[inline(never)]
-    fn too_deep<T>(&mut self, span: Span) -> Parse<T> {
+    pub(super) fn too_deep<T>(&mut self, span: Span) -> Parse<T> {
         let message = format!("this expression is nested more than {MAX_NESTING} levels deep");
         self.report(
             Diagnostic::error("too-deep", span, message).with_help("name parts of it by `define` or `label`"),

@@ -34,7 +34,7 @@ pub(super) fn instead_of_item(tok: Tok, text: &str) -> Option<&'static str> {
     Some(match (tok, text) {
         (Tok::Hash | Tok::Op(Operator::Minus | Operator::Arith(ArithOp::Mod)), _) => COMMENT,
         (_, "VAR" | "var" | "bool" | "boolean" | "int" | "real" | "variable" | "let") => STATE,
-        (_, "ASSIGN" | "TRANS" | "next" | "transition" | "trans" | "when") => STEP,
+        (_, "ASSIGN" | "TRANS" | "next" | "transition" | "when") => STEP,
         (_, "INIT" | "initial") => "initial states are written `init x == 0;`",
         (_, "DEFINE") => "labels are written `label NAME = x == 0;`",
         _ => return None,

@@ -1,6 +1,7 @@
 //! Operands: names, brackets, conditionals; and what else of an operator has brackets, intervals
 //! and sets.
 
+use super::choice::Branch;
 use super::expr::{Bounds, Node};
 use super::item::MINIMIZE;
 use super::{Abort, Parse, Parser, ident};
@@ -44,18 +45,19 @@ impl Parser<'_> {
     #[inline(never)]
     pub(super) fn membership(&mut self, left: Node) -> Parse<Node> {
         let start = self.token().span;
-        let (set, height) = self.set_and_height()?;
+        let (set, height) = self.set_and_height(false)?;
         let whole = self.since(left.outer);
         self.inner(ExprKind::In(left.expr, set), whole, left.height.max(height), start)
     }
 
-    /// `{E, ...}`, `LO..HI` or `enabled[p]`.
+    /// What an update chooses from: `{E, ...}`, `LO..HI`, or one of several by condition.
     pub(super) fn set(&mut self) -> Parse<Set> {
-        Ok(self.set_and_height()?.0)
+        Ok(self.set_and_height(true)?.0)
     }
 
+    /// `{E, ...}`, `LO..HI` or `enabled[p]`; where there is a choice, also a conditional set.
     #[inline(never)]
-    fn set_and_height(&mut self) -> Parse<(Set, u32)> {
+    pub(super) fn set_and_height(&mut self, choice: bool) -> Parse<(Set, u32)> {
         let start = self.token();
         if self.eat(Tok::LBrace).is_some() {
             let (items, height) = self.list(Tok::RBrace, "`,` or `}`")?;
@@ -68,7 +70,13 @@ impl Parser<'_> {
             self.expect(Tok::RBracket, "`]`")?;
             return Ok((Set::Enabled(path, self.since(start.span)), 1));
         }
-        let lo = self.node(level::SUM)?;
+        let lo = match self.peek() {
+            Tok::If if choice => match self.conditional_set()? {
+                (Branch::Set(set), height) => return Ok((set, height)),
+                (Branch::Value(lo), _) => lo,
+            },
+            _ => self.node(level::SUM)?,
+        };
         if self.peek() != Tok::DotDot {
             let help = "a set is written `{a, b}`, `0..2` or `enabled[p]`";
             return self.fail_with("`..`", Some(help.to_owned()));
@@ -115,7 +123,7 @@ impl Parser<'_> {
         Ok(Node::leaf(kind, token.span))
     }
 
-    /// `NAME`, `NAME[p]` or `NAME(p, ...)`.
+    /// `NAME`, `NAME'`, `NAME[p]` or `NAME(p, ...)`.
     #[inline(never)]
     fn named(&mut self) -> Parse<Node> {
         let token = self.bump();
@@ -135,6 +143,10 @@ impl Parser<'_> {
                 ExprKind::At(ident(token), paths)
             }
             Tok::LParen => ExprKind::Call(ident(token), self.parenthesized_names("a path variable")?),
+            Tok::Prime if self.primes => {
+                self.bump();
+                ExprKind::Primed(token.text.to_owned())
+            }
             _ => {
                 self.check_glued(token.text)?;
                 ExprKind::Name(token.text.to_owned())
@@ -210,18 +222,32 @@ impl Parser<'_> {
     /// `if C then A else B`; `B` reaches as far to the right as the expression around may.
     #[inline(never)]
     fn conditional(&mut self, least: u8) -> Parse<Node> {
-        let start = self.bump();
-        let condition = self.node(level::LOWEST)?;
-        self.expect(Tok::Then, "`then`")?;
-        let yes = self.node(level::LOWEST)?;
-        if self.peek() != Tok::Else {
-            return self.fail_with("`else`", Some("an `if` always has an `else`".to_owned()));
+        let start = self.token();
+        let (mut branches, mut height) = (Vec::new(), 0);
+        while self.eat(Tok::If).is_some() {
+            let condition = self.node(level::LOWEST)?;
+            self.expect(Tok::Then, "`then`")?;
+            let yes = self.node(level::LOWEST)?;
+            self.expect_else()?;
+            height = height.max(condition.height).max(yes.height);
+            branches.push((*condition.expr, *yes.expr));
         }
-        self.bump();
-        let no = self.node(least)?;
-        let height = condition.height.max(yes.height).max(no.height);
-        let kind = ExprKind::If(condition.expr, yes.expr, no.expr);
-        self.inner(kind, self.since(start.span), height, start.span)
+        let mut last = self.node(least)?;
+        height = height.max(last.height);
+        // The same chain in parentheses.
+        if let ExprKind::If(more, end) = last.expr.kind {
+            branches.extend(more);
+            last.expr = end;
+        }
+        self.inner(ExprKind::If(branches, last.expr), self.since(start.span), height, start.span)
+    }
+
+    #[inline(never)]
+    pub(super) fn expect_else(&mut self) -> Parse<()> {
+        if self.eat(Tok::Else).is_some() {
+            return Ok(());
+        }
+        self.fail_with("`else`", Some("an `if` always has an `else`".to_owned()))
     }
 
     #[inline(never)]

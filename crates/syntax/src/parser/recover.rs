@@ -11,8 +11,8 @@ pub(super) const TOP: &[&str] = &["const", "system", "template", "define", "obje
 
 /// Words that begin an item of a system.
 pub(super) const ITEMS: &[&str] = &[
-    "state", "action", "on", "also", "init", "label", "cost", "observe", "absorb", "moves", "obstacle",
-    "edge", "corner", "legend", "scenario", "unknown", "inflate", "scale", "crop",
+    "state", "action", "on", "also", "init", "label", "cost", "observe", "absorb", "trans", "moves",
+    "obstacle", "edge", "corner", "legend", "scenario", "unknown", "inflate", "scale", "crop",
 ];
 
 /// What a block holds, and so where its next member begins.
@@ -43,7 +43,7 @@ impl Parser<'_> {
             Block::System => {
                 let begins = matches!(next, Tok::LBracket | Tok::LParen | Tok::Assign | EQUALS);
                 let expression =
-                    matches!(token.text, "init" | "observe" | "absorb" | "inflate" | "scale" | "crop")
+                    matches!(token.text, "init" | "observe" | "absorb" | "trans" | "inflate" | "scale" | "crop")
                         && next == Tok::LParen;
                 let misspelt = || next == Tok::Ident && self.begins_misspelt(ITEMS);
                 ITEMS.contains(&token.text) && (!begins || expression) || misspelt()

@@ -126,6 +126,12 @@ impl Parser<'_> {
             "corner" => SystemItem::Corner(self.name("`free`, `undefined`, `stay` or `crash`")?),
             "init" => SystemItem::Init(self.expr()?),
             "absorb" => SystemItem::Absorb(self.expr()?),
+            "trans" => {
+                self.primes = true;
+                let constraint = self.expr();
+                self.primes = false;
+                SystemItem::Trans(constraint?)
+            }
             "observe" => SystemItem::Observe(self.separated(Self::expr)?),
             "label" => {
                 let name = self.name("the name of a label")?;

@@ -111,6 +111,7 @@ fn parts<'a>(e: &'a Expr, out: &mut Tasks<'a>) {
     match &e.kind {
         ExprKind::Bool(value) => out.push(text(if *value { "true" } else { "false" })),
         ExprKind::Number(word) | ExprKind::Name(word) => out.push(Task::Text(word.clone().into())),
+        ExprKind::Primed(word) => out.push(Task::Text(format!("{word}'").into())),
         ExprKind::Text(name) => out.push(Task::Text(quoted(name).into())),
         ExprKind::At(name, paths) => out.push(applied(name, "[", paths, "]")),
         ExprKind::Cost(name, paths) => {
@@ -133,7 +134,10 @@ fn parts<'a>(e: &'a Expr, out: &mut Tasks<'a>) {
             list(items, out);
             out.push(text(")"));
         }
-        ExprKind::If(c, a, b) => conditional(c, a, b, out),
+        ExprKind::If(branches, last) => {
+            conditional(branches, |value| Task::Expr(value, level::LOWEST), out);
+            out.push(Task::Expr(last, level::LOWEST));
+        }
         ExprKind::Unary(op, interval, a) => prefix(Operator::Unary(*op), interval.as_ref(), a, out),
         ExprKind::Binary(op, interval, a, b) => {
             infix(Operator::Binary(*op), interval.as_ref(), a, b, out);
@@ -174,10 +178,12 @@ fn infix<'a>(
     });
 }
 
-fn conditional<'a>(c: &'a Expr, a: &'a Expr, b: &'a Expr, out: &mut Tasks<'a>) {
-    out.extend([text("if "), Task::Expr(c, level::LOWEST), Task::Soft]);
-    out.extend([text("then "), Task::Expr(a, level::LOWEST), Task::Soft, text("else ")]);
-    out.push(if matches!(b.kind, ExprKind::If(..)) { Task::Rest(b) } else { Task::Expr(b, level::LOWEST) });
+/// `if C then A else if D then B else `, with what stands behind `then` as `value` says.
+fn conditional<'a, T>(branches: &'a [(Expr, T)], value: impl Fn(&'a T) -> Task<'a>, out: &mut Tasks<'a>) {
+    for (condition, then) in branches {
+        out.extend([text("if "), Task::Expr(condition, level::LOWEST), Task::Soft, text("then ")]);
+        out.extend([value(then), Task::Soft, text("else ")]);
+    }
 }
 
 /// Operands with one sign between them.
@@ -221,6 +227,10 @@ fn set_parts<'a>(set: &'a Set, out: &mut Tasks<'a>) {
         }
         Set::Range(lo, hi) => range(lo, hi, out),
         Set::Enabled(path, _) => out.push(Task::Text(format!("enabled[{}]", path.name).into())),
+        Set::If(branches, last, _) => {
+            conditional(branches, Task::Set, out);
+            out.push(Task::Set(last));
+        }
     }
 }
 

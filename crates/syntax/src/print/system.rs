@@ -68,7 +68,7 @@ impl Printer<'_> {
             | SystemItem::Map { span, .. } => return span.start as usize,
             SystemItem::State(decls) => decls.first().map(|decl| decl.name.span),
             SystemItem::Action(names) | SystemItem::Moves(names) => names.first().map(|name| name.span),
-            SystemItem::Init(e) | SystemItem::Absorb(e) => Some(e.span),
+            SystemItem::Init(e) | SystemItem::Absorb(e) | SystemItem::Trans(e) => Some(e.span),
             SystemItem::Label(name, _)
             | SystemItem::Cost(name, _)
             | SystemItem::Obstacle(name)
@@ -88,6 +88,7 @@ impl Printer<'_> {
             SystemItem::Moves(names) => self.named("moves ", names),
             SystemItem::Init(e) => self.constraint("init ", e),
             SystemItem::Absorb(e) => self.constraint("absorb ", e),
+            SystemItem::Trans(e) => self.constraint("trans ", e),
             SystemItem::Observe(es) => {
                 self.layout.text("observe ");
                 self.exprs(es);
@@ -201,7 +202,7 @@ impl Printer<'_> {
                 self.layout.text(format!("{}' in ", update.var.name));
                 self.set(set);
                 match set {
-                    Set::List(_, span) | Set::Enabled(_, span) => span.end as usize,
+                    Set::List(_, span) | Set::Enabled(_, span) | Set::If(_, _, span) => span.end as usize,
                     Set::Range(_, hi) => end(hi),
                 }
             }

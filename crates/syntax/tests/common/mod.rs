@@ -58,6 +58,11 @@ pub fn show_set(set: &Set) -> String {
         Set::List(items, _) => format!("{{{}}}", list(items, ",")),
         Set::Range(lo, hi) => format!("{}..{}", show(lo), show(hi)),
         Set::Enabled(path, _) => format!("enabled[{}]", path.name),
+        Set::If(branches, last, _) => {
+            let shown =
+                branches.iter().map(|(c, set)| format!("if {} then {} else ", show(c), show_set(set)));
+            shown.collect::<String>() + &show_set(last)
+        }
     }
 }
 
@@ -73,6 +78,7 @@ pub fn show(expr: &Expr) -> String {
     match &expr.kind {
         ExprKind::Bool(value) => value.to_string(),
         ExprKind::Number(text) | ExprKind::Name(text) => text.clone(),
+        ExprKind::Primed(text) => format!("{text}'"),
         ExprKind::Text(text) => format!("{text:?}"),
         ExprKind::At(name, paths) => format!("{}[{}]", name.name, names(paths)),
         ExprKind::Cost(name, paths) => format!("cost {}[{}]", name.name, names(paths)),
@@ -92,7 +98,10 @@ pub fn show(expr: &Expr) -> String {
         ExprKind::Arith(op, left, right) => format!("({} {} {})", show(left), arith(*op), show(right)),
         ExprKind::In(left, set) => format!("({} in {})", show(left), show_set(set)),
         ExprKind::Tuple(items) => format!("<{}>", list(items, ",")),
-        ExprKind::If(c, a, b) => format!("(if {} then {} else {})", show(c), show(a), show(b)),
+        ExprKind::If(branches, last) => {
+            let shown = branches.iter().map(|(c, a)| format!("if {} then {} else ", show(c), show(a)));
+            format!("({}{})", shown.collect::<String>(), show(last))
+        }
         ExprKind::Unary(op, interval, inner) => {
             let op = match op {
                 UnaryOp::Next => "X",

@@ -126,7 +126,7 @@ fn system(random: &mut Random) -> System {
 }
 
 fn system_item(random: &mut Random) -> SystemItem {
-    match random.below(18) {
+    match random.below(19) {
         0 => SystemItem::State((0..1 + random.below(3)).map(|_| state(random)).collect()),
         1 => SystemItem::Action(idents(random, 1)),
         2 => SystemItem::On(clause(random)),
@@ -140,6 +140,7 @@ fn system_item(random: &mut Random) -> SystemItem {
         10..=14 => SystemItem::Map { item: Box::new(map_item(random)), span: NOWHERE },
         15 => SystemItem::Also(clause(random)),
         16 => SystemItem::Cost(ident(random), expr(random, 3)),
+        17 => SystemItem::Trans(constraint(random)),
         _ => SystemItem::Legend {
             letter: Text {
                 text: random.one(&["W", "é", " ", "\"", "#", "#0000ff", "#00Ff0080"]).to_owned(),
@@ -186,7 +187,7 @@ fn clause(random: &mut Random) -> Clause {
         value: if random.flip() {
             UpdateValue::Assign(expr(random, 3))
         } else {
-            UpdateValue::Choose(set(random, 3))
+            UpdateValue::Choose(choice(random, 3))
         },
     };
     Clause {
@@ -195,6 +196,13 @@ fn clause(random: &mut Random) -> Clause {
         updates: (0..random.below(4)).map(|_| update(random)).collect(),
         span: NOWHERE,
     }
+}
+
+/// What `trans` says: with primes.
+fn constraint(random: &mut Random) -> Expr {
+    let primed = Box::new(Expr { kind: ExprKind::Primed(ident(random).name), span: NOWHERE });
+    let kind = ExprKind::Compare(compare(random), Box::new(expr(random, 2)), primed);
+    Expr { kind, span: NOWHERE }
 }
 
 /// An expression of at most so many levels.
@@ -208,8 +216,9 @@ fn leaf(random: &mut Random) -> ExprKind {
         1 => ExprKind::Number(random.one(&["0", "12", "0.5"]).to_owned()),
         2 => ExprKind::At(ident(random), idents(random, 1)),
         3 => ExprKind::Call(ident(random), idents(random, 0)),
-        5 => ExprKind::Cost(ident(random), idents(random, 1)),
+        6 => ExprKind::Cost(ident(random), idents(random, 1)),
         4 => ExprKind::Text(random.one(&["room A", "17", "say \"hi\"", "back\\slash"]).to_owned()),
+        5 => ExprKind::Name(random.one(&["proc.line", "queue[0][12]", "a.b[1].c"]).to_owned()),
         _ => ExprKind::Name(ident(random).name),
     }
 }
@@ -234,10 +243,20 @@ fn kind(random: &mut Random, depth: u32) -> ExprKind {
         10 => ExprKind::Arith(arith(random), a, b),
         11 => ExprKind::In(a, set(random, depth)),
         12 => ExprKind::Tuple(several(random, depth)),
-        13 => ExprKind::If(a, b, Box::new(expr(random, depth))),
+        13 => conditional(random, depth),
         14 => temporal(random, depth, a),
         _ => ExprKind::Binary(binary(random), interval(random, depth), a, b),
     }
+}
+
+/// A chain whose last value is none itself.
+fn conditional(random: &mut Random, depth: u32) -> ExprKind {
+    let branches = (0..1 + random.below(3)).map(|_| (expr(random, depth), expr(random, depth))).collect();
+    let mut last = expr(random, depth);
+    while let ExprKind::If(_, end) = last.kind {
+        last = *end;
+    }
+    ExprKind::If(branches, Box::new(last))
 }
 
 fn binary(random: &mut Random) -> BinaryOp {
@@ -256,6 +275,24 @@ fn temporal(random: &mut Random, depth: u32, a: Box<Expr>) -> ExprKind {
 
 fn several(random: &mut Random, depth: u32) -> Vec<Expr> {
     (0..2 + random.below(3)).map(|_| expr(random, depth)).collect()
+}
+
+/// What an update chooses from.
+fn choice(random: &mut Random, depth: u32) -> Set {
+    if depth == 0 || random.flip() {
+        return match set(random, depth) {
+            // It is parsed as a set, and is none that an update can have.
+            Set::Enabled(..) => Set::List(vec![expr(random, depth)], NOWHERE),
+            set => set,
+        };
+    }
+    let branches = (0..1 + random.below(3)).map(|_| (expr(random, depth), choice(random, depth - 1)));
+    let branches = branches.collect();
+    let mut last = choice(random, depth - 1);
+    while let Set::If(_, end, _) = last {
+        last = *end;
+    }
+    Set::If(branches, Box::new(last), NOWHERE)
 }
 
 fn set(random: &mut Random, depth: u32) -> Set {

@@ -37,9 +37,16 @@ pub(crate) fn system(n: i64, actions: u32, edges: &[(i64, u32, i64)], init: &[i6
         costs: Vec::new().into(),
         base: None,
         edges: None,
+        trans: Expr::TRUE,
         init: Expr::Or(init.iter().map(|&i| is(Leaf::Var(S), i)).collect()),
-        labels: vec![Label { name: "zero".into(), expr: is(Leaf::Var(S), 0), nested: false, span: span() }]
-            .into(),
+        labels: vec![Label {
+            name: "zero".into(),
+            expr: is(Leaf::Var(S), 0),
+            ty: Type::Bool,
+            nested: false,
+            span: span(),
+        }]
+        .into(),
         absorb: Expr::FALSE,
         observe: Vec::new(),
         map: None,

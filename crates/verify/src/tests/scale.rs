@@ -36,7 +36,8 @@ fn grid(n: i64) -> System {
         sums: None,
         span: span(),
     };
-    let label = |name: &str, expr| Label { name: name.into(), expr, nested: false, span: span() };
+    let label =
+        |name: &str, expr| Label { name: name.into(), expr, ty: Type::Bool, nested: false, span: span() };
     System {
         name: "Grid".into(),
         vars: vec![var("x"), var("y")].into(),
@@ -46,6 +47,7 @@ fn grid(n: i64) -> System {
         costs: Vec::new().into(),
         base: None,
         edges: None,
+        trans: Expr::TRUE,
         init: Expr::TRUE,
         labels: vec![label("start", corner(0)), label("goal", corner(n - 1))].into(),
         absorb: Expr::FALSE,

@@ -120,7 +120,7 @@ pub(crate) fn base(map: &GridMap, rules: &Rules, actions: &mut Actions, span: Sp
         } else {
             uncrashed(Expr::Member(vec![var(X), var(Y)], set(cells)))
         };
-        Label { name: name.clone(), expr, nested: false, span }
+        Label { name: name.clone(), expr, ty: Type::Bool, nested: false, span }
     });
     Base {
         vars: variables(map, can_crash, span),

@@ -33,12 +33,20 @@ fn connectives(split: &mut Formula, expr: &Expr<PathLeaf>, span: Span) -> Formul
             Node::Iff(a, b)
         }
         // The whole is a truth value, so its branches are.
-        Expr::If(c, a, b) => {
-            let [c, a, b] = [c, a, b].map(|e| connectives(split, e, span));
-            let not_c = split.push(Node::Not(c), span);
-            let then = split.push(Node::And(vec![c, a]), span);
-            let otherwise = split.push(Node::And(vec![not_c, b]), span);
-            Node::Or(vec![then, otherwise])
+        Expr::If(branches, last) => {
+            let mut ways = Vec::with_capacity(branches.len() + 1);
+            let mut none_before = Vec::new();
+            for (condition, value) in branches {
+                let [c, a] = [condition, value].map(|e| connectives(split, e, span));
+                ways.push(split.push(Node::And([&none_before[..], &[c, a]].concat()), span));
+                let not_c = split.push(Node::Not(c), span);
+                // What was negated so far is one node, so that long chains stay small.
+                none_before.push(not_c);
+                none_before = vec![split.push(Node::And(none_before), span)];
+            }
+            none_before.push(connectives(split, last, span));
+            ways.push(split.push(Node::And(none_before), span));
+            Node::Or(ways)
         }
         atom => Node::Atom(atom.clone()),
     };

@@ -1,7 +1,8 @@
 //! The meaning of a system, as plainly as it can be said.
 
-use crate::{ActionId, Expr, Leaf, StepLeaf, System, Type, Update, Value, VarId};
+use crate::{ActionId, Expr, Leaf, StepLeaf, System, TransLeaf, Type, Update, Value, VarId};
 use std::collections::BTreeSet;
+use std::convert::Infallible;
 
 pub(super) fn eval(system: &System, e: &Expr<Leaf>, state: &[Value]) -> Value {
     let value = e.evaluate(&mut |leaf| match leaf {
@@ -42,6 +43,7 @@ pub(super) fn successors(system: &System, state: &[Value], action: ActionId) -> 
             all.extend(outcomes(system, state, next, &[], action, Some(at)));
         }
     }
+    all.retain(|next| is_step(system, state, next));
     all
 }
 
@@ -80,7 +82,9 @@ fn outcomes(
 }
 
 fn values<L>(update: &Update<L>, eval: &dyn Fn(&Expr<L>) -> Value) -> Vec<Value> {
+    let Ok(update) = update.in_state(&mut |c| Ok::<_, Infallible>(eval(c) == Value::Bool(true)));
     match update {
+        Update::If(..) => unreachable!("no conditions are left"),
         Update::Assign(e) => vec![eval(e)],
         Update::OneOf(es) => es.iter().map(eval).collect(),
         Update::Within(lo, hi) => match (eval(lo), eval(hi)) {
@@ -98,6 +102,14 @@ fn extended(system: &System, states: Vec<Vec<Value>>, var: VarId, values: Vec<Va
         state
     };
     states.iter().flat_map(|state| fitting.iter().map(|&value| with(state, value))).collect()
+}
+
+fn is_step(system: &System, from: &[Value], to: &[Value]) -> bool {
+    let holds = system.trans.evaluate(&mut |leaf| match *leaf {
+        TransLeaf::Before(leaf) => Some(eval(system, &Expr::Leaf(leaf), from)),
+        TransLeaf::After(leaf) => Some(eval(system, &Expr::Leaf(leaf), to)),
+    });
+    holds == Some(Value::Bool(true))
 }
 
 /// All assignments of values to variables.

@@ -184,6 +184,25 @@ fn repeated_items_combine() {
 }
 
 #[test]
+fn labels_of_any_type() {
+    let system = system(
+        "system S { state x: 0..3, m: {a, b}; label twice = 2 * half + x; label half = x div 2; \
+         label other = if m == a then b else a; label more = twice > 3 & other == a; \
+         trans twice' >= half; on step { x' in 0..3; m' in {a, b}; } } \
+         objective o { exists p. twice[p] == 5 & F[0,1] (other[p] == m[p] | half[p] + 1 == x[p]) }",
+    );
+    let system = &system;
+    let ty = |name: &str| system.labels[system.label(name).expect("it is declared")].ty.clone();
+    assert_eq!(ty("half"), Type::Range { lo: 0, hi: 1 });
+    assert_eq!(ty("twice"), Type::Range { lo: 0, hi: 5 });
+    assert_eq!(ty("more"), Type::Bool);
+    assert_eq!(labelled(system, "more").len(), 2);
+    // From x = 2, where half is 1, no step leads to where twice is 0.
+    let from = [Value::Int(2), Value::Enum(0)];
+    assert_eq!(successors(system, &from, system.actions[0]).len(), 6);
+}
+
+#[test]
 fn mistakes_in_systems() {
     let cases = [
         ("state x: 3..1;", "empty-range", "3..1"),
@@ -211,7 +230,12 @@ fn mistakes_in_systems() {
         ("label a = a;", "cyclic-label", "a"),
         ("label a = b; label b = c; label c = b;", "cyclic-label", "b"),
         ("state x: 0..1; label a = xx == 1;", "unknown-name", "xx"),
-        ("state x: 0..1; label a = x;", "type-mismatch", "x"),
+        ("state x: 0..1; label a = x; init a;", "type-mismatch", "a"),
+        ("state x: 0..1; label a = b & x == 0; label b = x;", "type-mismatch", "b"),
+        ("state x: 0..1; trans y' == 0;", "unknown-name", "y'"),
+        ("state x: 0..1; trans x';", "type-mismatch", "x'"),
+        ("state x: 0..1; on step { x' in if x == 0 then {1} else {true}; }", "type-mismatch", "true"),
+        ("state x: 0..1; on step { x' in if x then {1} else {0}; }", "type-mismatch", "x"),
         ("state x: 0..1, b: bool; label a = x == b;", "type-mismatch", "x == b"),
         ("state b: bool; label a = b < true;", "type-mismatch", "b < true"),
         ("state x: 0..1, y: 0..1; label a = x * y == 1;", "nonlinear", "x * y"),
