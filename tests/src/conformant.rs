@@ -65,6 +65,8 @@ fn system(random: &mut Random) -> System {
         init: Some(starts),
         labels: vec![vec![HOME], vec![goal]],
         absorb,
+        forbidden: Vec::new(),
+        merged: random.once_in(4),
         observe: Observe::First,
     }
 }

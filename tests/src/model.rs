@@ -83,6 +83,10 @@ pub struct System {
     pub labels: Vec<Vec<usize>>,
     /// Absorbing states.
     pub absorb: Vec<usize>,
+    /// Pairs of states between which no action leads, but for absorbing ones; `trans` says so.
+    pub forbidden: Vec<(usize, usize)>,
+    /// Whether rules of the same actions are written as one clause, with choices that depend on the state.
+    pub merged: bool,
     /// Whether `obs` sees the first variable only, or a label's states.
     pub observe: Observe,
 }
@@ -279,7 +283,9 @@ impl System {
             }
             for &action in &rule.actions {
                 let all = self.with_also(rule.from, action, &targets);
-                edges.extend(all.iter().filter_map(|values| Some((rule.from, action, self.state(values)?))));
+                let all = all.iter().filter_map(|values| self.state(values));
+                let allowed = all.filter(|to| !self.forbidden.contains(&(rule.from, *to)));
+                edges.extend(allowed.map(|to| (rule.from, action, to)));
             }
         }
         edges.extend(self.absorb.iter().flat_map(|&s| (0..self.actions.len()).map(move |a| (s, a, s))));
@@ -327,12 +333,80 @@ impl System {
     }
 
     fn is_state(&self, state: usize) -> String {
+        self.is_state_of(state, "")
+    }
+
+    /// The same of the variables with a mark behind their names.
+    fn is_state_of(&self, state: usize, mark: &str) -> String {
         let equal = self.vars.iter().zip(self.values(state)).map(|((name, kind), value)| match kind {
-            Kind::Bool if value == 1 => (*name).to_string(),
-            Kind::Bool => format!("!{name}"),
-            _ => format!("{name} == {}", kind.value(value)),
+            Kind::Bool if value == 1 => format!("{name}{mark}"),
+            Kind::Bool => format!("!{name}{mark}"),
+            _ => format!("{name}{mark} == {}", kind.value(value)),
         });
         equal.collect::<Vec<_>>().join(" & ")
+    }
+
+    /// The rules as written: each alone, or those of the same actions in different states together.
+    fn clauses(&self) -> Vec<Vec<&Rule>> {
+        let mut clauses: Vec<Vec<&Rule>> = Vec::new();
+        for rule in &self.rules {
+            let fits = |clause: &&mut Vec<&Rule>| {
+                // What a clause changes, no other may change besides where it applies.
+                let mentions =
+                    |r: &Rule| self.also.iter().map(|a| r.choices[a.var].is_some()).collect::<Vec<_>>();
+                let fits = |r: &&Rule| {
+                    r.actions == rule.actions && r.from != rule.from && mentions(r) == mentions(rule)
+                };
+                self.merged && clause.iter().all(fits)
+            };
+            match clauses.iter_mut().find(fits) {
+                Some(clause) => clause.push(rule),
+                None => clauses.push(vec![rule]),
+            }
+        }
+        clauses
+    }
+
+    /// What becomes of a variable by rules in different states.
+    fn conditional(&self, rules: &[&Rule], var: usize) -> String {
+        let (name, kind) = self.vars[var];
+        let choice = |rule: &Rule| match &rule.choices[var] {
+            None => format!("{{{name}}}"),
+            Some(values) => {
+                let values: Vec<String> = values.iter().map(|&v| kind.value(v)).collect();
+                format!("{{{}}}", values.join(", "))
+            }
+        };
+        if rules[0].choices[var].is_none() && self.also.iter().any(|also| also.var == var) {
+            return String::new();
+        }
+        let (last, rest) = rules.split_last().expect("a clause has rules");
+        let mut text = format!(" {name}' in ");
+        for rule in rest {
+            text += &format!("if {} then {} else ", self.is_state(rule.from), choice(rule));
+        }
+        text + &choice(last) + ";"
+    }
+
+    /// What a clause of `also` asks and does; where it may, with its guard in the choice.
+    fn besides(&self, also: &Also) -> String {
+        let (name, kind) = self.vars[also.var];
+        let values: Vec<String> = also.choices.iter().map(|&c| kind.value(c)).collect();
+        let value = match values.as_slice() {
+            [one] => format!("= {one}"),
+            _ => format!("in {{{}}}", values.join(", ")),
+        };
+        if also.from.len() == self.states() {
+            return format!("{{ {name}' {value}; }}");
+        }
+        let guard = self.is_one_of(&also.from);
+        let shares = |actions: &[usize]| also.actions.iter().any(|a| actions.contains(a));
+        let by_rule = self.rules.iter().any(|r| shares(&r.actions) && r.choices[also.var].is_some());
+        let changing = self.also.iter().filter(|other| other.var == also.var && shares(&other.actions));
+        if self.merged && !by_rule && changing.count() == 1 {
+            return format!("{{ {name}' in if {guard} then {{{}}} else {{{name}}}; }}", values.join(", "));
+        }
+        format!("when {guard} {{ {name}' {value}; }}")
     }
 
     fn is_one_of(&self, states: &[usize]) -> String {
@@ -362,8 +436,17 @@ impl Display for System {
         });
         writeln!(f, "system M {{\n  state {};", vars.collect::<Vec<_>>().join(", "))?;
         writeln!(f, "  action {};", self.actions.join(", "))?;
-        for rule in &self.rules {
-            write!(f, "  on {} when {} {{", self.named(&rule.actions), self.is_state(rule.from))?;
+        for rules in self.clauses() {
+            let rule = rules[0];
+            let actions = self.named(&rule.actions);
+            let from: Vec<usize> = rules.iter().map(|rule| rule.from).collect();
+            if rules.len() > 1 {
+                let updates = (0..self.vars.len()).map(|var| self.conditional(&rules, var));
+                let guard = self.is_one_of(&from);
+                writeln!(f, "  on {actions} when {guard} {{{} }}", updates.collect::<String>())?;
+                continue;
+            }
+            write!(f, "  on {actions} when {} {{", self.is_state(rule.from))?;
             for ((name, kind), choices) in self.vars.iter().zip(&rule.choices) {
                 let values: Vec<String> = choices.iter().flatten().map(|&c| kind.value(c)).collect();
                 match values.as_slice() {
@@ -378,21 +461,13 @@ impl Display for System {
             writeln!(f, " }}")?;
         }
         for also in &self.also {
-            let (name, kind) = self.vars[also.var];
-            let values: Vec<String> = also.choices.iter().map(|&c| kind.value(c)).collect();
-            let actions = self.named(&also.actions);
-            let guard = match also.from.len() == self.states() {
-                true => String::new(),
-                false => format!(" when {}", self.is_one_of(&also.from)),
-            };
-            let value = match values.as_slice() {
-                [one] => format!("= {one}"),
-                _ => format!("in {{{}}}", values.join(", ")),
-            };
-            writeln!(f, "  also on {actions}{guard} {{ {name}' {value}; }}")?;
+            writeln!(f, "  also on {} {}", self.named(&also.actions), self.besides(also))?;
         }
         if !self.costs.is_empty() {
             writeln!(f, "  cost c = {};", self.cost())?;
+        }
+        for (from, to) in &self.forbidden {
+            writeln!(f, "  trans {} -> !({});", self.is_state(*from), self.is_state_of(*to, "'"))?;
         }
         if let Some(init) = &self.init {
             writeln!(f, "  init {};", self.is_one_of(init))?;

@@ -173,6 +173,7 @@ pub fn halting_problem(random: &mut Random) -> Problem {
     system.init = None;
     system.rules.clear();
     system.also.clear();
+    system.forbidden.clear();
     system.absorb = vec![states - 1];
     for from in 0..states - 1 {
         if random.once_in(4) {
@@ -239,6 +240,8 @@ fn system(random: &mut Random) -> System {
         init: None,
         labels: Vec::new(),
         absorb: Vec::new(),
+        forbidden: Vec::new(),
+        merged: false,
         observe: Observe::First,
     };
     let states = system.states();
@@ -268,6 +271,12 @@ fn system(random: &mut Random) -> System {
     if random.once_in(2) {
         system.observe = Observe::Label;
     }
+    if random.once_in(4) {
+        for _ in 0..1 + random.below(3) {
+            system.forbidden.push((random.below(states), random.below(states)));
+        }
+    }
+    system.merged = random.once_in(3);
     system
 }
 

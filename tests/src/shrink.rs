@@ -48,6 +48,10 @@ fn smaller(problem: &Problem) -> Vec<Problem> {
     for at in 0..problem.system.absorb.len() {
         changed(&|p| remove(&mut p.system.absorb, at));
     }
+    for at in 0..problem.system.forbidden.len() {
+        changed(&|p| remove(&mut p.system.forbidden, at));
+    }
+    changed(&|p| p.system.merged = false);
     for (label, states) in problem.system.labels.iter().enumerate() {
         for at in 0..states.len() {
             changed(&|p| remove(&mut p.system.labels[label], at));

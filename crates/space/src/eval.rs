@@ -1,7 +1,7 @@
 //! Expressions evaluated on concrete states: of a finite system as a row of integers (Booleans are 0 and 1,
 //! enumeration values their position), which is fast; of any system as values.
 
-use hyperplan_problem::{Comparison, Expr, LabelMemo, Leaf, TransLeaf, System, Type, Value};
+use hyperplan_problem::{Comparison, Expr, LabelMemo, Leaf, System, TransLeaf, Type, Value};
 
 /// A value of a finite type as an integer.
 pub fn code(value: Value) -> i64 {

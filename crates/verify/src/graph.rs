@@ -2,7 +2,9 @@
 
 use crate::eval::{eval, truth};
 use crate::report::{Error, Stop};
-use hyperplan_problem::{ActionId, Also, Expr, Leaf, StepLeaf, System, TransLeaf, Type, Update, Value, VarId};
+use hyperplan_problem::{
+    ActionId, Also, Expr, Leaf, StepLeaf, System, TransLeaf, Type, Update, Value, VarId,
+};
 use rustc_hash::FxHashMap;
 use std::rc::Rc;
 use typed_index_collections::TiVec;

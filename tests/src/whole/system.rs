@@ -157,11 +157,14 @@ impl System {
         let action = &self.actions[0];
         let by = if numbered { "length div 3" } else { "1" };
         "  state fuel: 0..3;\n".to_owned()
-            + &match random.below(3) {
+            + &match random.below(4) {
                 0 => format!("  also on * {{ fuel' = fuel - {by}; }}\n"),
                 1 => format!(
                     "  also on * when !{goal} {{ fuel' = fuel - (if action == {action} then 2 else 1); }}\n  \
                      also on * when {goal} {{ fuel' in {{fuel, 3}}; }}\n"
+                ),
+                2 => format!(
+                    "  also on * {{ fuel' in if {goal} then {{fuel, 3}} else fuel - {by}..fuel; }}\n  trans fuel' >= fuel - 1;\n"
                 ),
                 _ => format!("  also on {action} {{ fuel' in fuel - 1..fuel; }}\n"),
             }
@@ -308,6 +311,9 @@ impl System {
                 .replace("THERE", &there);
             self.costs = true;
         }
+        if random.once_in(4) {
+            items += &format!("  trans l0' -> {};\n", proposition(random, &scope, 1));
+        }
         if random.flip() {
             self.observes = true;
             items += &format!("  observe {}, l0;\n", self.vars[0].0);
@@ -330,6 +336,10 @@ impl System {
                 Kind::Bool => format!("= {}", proposition(random, &scope, 1)),
                 Kind::Enum(values) if random.flip() => format!("in {{{}}}", values.join(", ")),
                 Kind::Enum(values) => format!("= {}", values[random.below(values.len())]),
+                Kind::Range(..) | Kind::Int if random.once_in(5) => {
+                    let (condition, set) = (proposition(random, &scope, 1), quantity(random, &scope, 1));
+                    format!("in if {condition} then {{{set}, {name}}} else {}", range(random, &scope))
+                }
                 Kind::Range(..) | Kind::Int if random.once_in(4) => format!("in {}", range(random, &scope)),
                 Kind::Range(..) | Kind::Int | Kind::Real => format!("= {}", quantity(random, &scope, 1)),
             };

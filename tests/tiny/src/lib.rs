@@ -62,7 +62,11 @@ pub fn system() -> impl Strategy<Value = String> {
         let clauses = clauses.join(" ");
         // A variable that only `also` changes is there where one does: it makes more states.
         let (more, n) = if also.is_empty() { ("", "") } else { (", n: 0..2", "& n == 1") };
-        let trans = if counts && !also.is_empty() { format!("{trans} trans n' >= n - 1 & n' <= x' + 1;") } else { trans };
+        let trans = if counts && !also.is_empty() {
+            format!("{trans} trans n' >= n - 1 & n' <= x' + 1;")
+        } else {
+            trans
+        };
         format!(
             "system S {{ state x: 0..2, b: bool{more}; action l, r; label level = if b then 0 else 2 - x; \
              label high = level > 1; init x <= {init} & !b{n}; {absorb} {trans} {clauses} {also} }}"

@@ -2,7 +2,7 @@
 
 use super::path::clip;
 use crate::value::{Leaves, Val, compare, constant, equal, member_of, merge, same, translate};
-use hyperplan_problem::{Comparison, Expr, LabelMemo, Leaf, TransLeaf, System, Update, VarId};
+use hyperplan_problem::{Comparison, Expr, LabelMemo, Leaf, System, TransLeaf, Update, VarId};
 use hyperplan_smt::{Term, Terms};
 use hyperplan_space::{Command, Commands, Guard, Listed, NewValue, bounds};
 

@@ -42,9 +42,10 @@ impl Parser<'_> {
             }
             Block::System => {
                 let begins = matches!(next, Tok::LBracket | Tok::LParen | Tok::Assign | EQUALS);
-                let expression =
-                    matches!(token.text, "init" | "observe" | "absorb" | "trans" | "inflate" | "scale" | "crop")
-                        && next == Tok::LParen;
+                let expression = matches!(
+                    token.text,
+                    "init" | "observe" | "absorb" | "trans" | "inflate" | "scale" | "crop"
+                ) && next == Tok::LParen;
                 let misspelt = || next == Tok::Ident && self.begins_misspelt(ITEMS);
                 ITEMS.contains(&token.text) && (!begins || expression) || misspelt()
             }

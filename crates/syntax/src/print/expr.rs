@@ -228,8 +228,9 @@ fn set_parts<'a>(set: &'a Set, out: &mut Tasks<'a>) {
         Set::Range(lo, hi) => range(lo, hi, out),
         Set::Enabled(path, _) => out.push(Task::Text(format!("enabled[{}]", path.name).into())),
         Set::If(branches, last, _) => {
+            out.push(Task::Open);
             conditional(branches, Task::Set, out);
-            out.push(Task::Set(last));
+            out.extend([Task::Set(last), Task::Close]);
         }
     }
 }

@@ -158,7 +158,8 @@ impl Roadmap {
             return None;
         }
         let names: Vec<String> = listed.attributes.into_keys().collect();
-        let label = |(name, (nodes, span))| Label { name, expr: one_of(nodes), ty: Type::Bool, nested: false, span };
+        let label =
+            |(name, (nodes, span))| Label { name, expr: one_of(nodes), ty: Type::Bool, nested: false, span };
         let places: Option<Vec<(f64, f64)>> = self.places.into_iter().collect();
         let mut edges = Edges::with_attributes(NODE, self.nodes.len(), &names, listed.edges);
         if let Some(places) = &places {
