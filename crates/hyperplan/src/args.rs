@@ -4,6 +4,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use hyperplan_family as family;
 use hyperplan_problem::answer::{Quantifiers, States, WitnessPath};
+use crate::foreign::Foreign;
 use std::path::PathBuf;
 
 /// Plans robot motion from objectives that relate several paths at once.
@@ -69,12 +70,31 @@ pub(crate) enum SolveFormat {
 /// A problem file and how to read it.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct Problem {
-    /// The problem file (.hp); `-` is standard input
+    /// The problem file (.hp); `-` is standard input. Or a model of another tool (.smv), with further models and the
+    /// formula (.hq) behind it
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
     /// Replaces the value of a constant
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     pub(crate) set: Vec<(String, String)>,
+    /// What is read instead, where the file is one of another tool.
+    #[arg(skip)]
+    pub(crate) foreign: Option<Foreign>,
+}
+
+/// Files of other tools.
+#[derive(Clone, Debug, Args)]
+#[group(skip)]
+pub(crate) struct Others {
+    /// Where FILE is a model of another tool: models of further quantifiers, and the formula
+    #[arg(value_name = "MORE")]
+    pub(crate) more: Vec<PathBuf>,
+    /// The number of steps of each path, for formulas of other tools: read `within K`
+    #[arg(long, value_name = "K")]
+    pub(crate) bound: Option<u32>,
+    /// How formulas of other tools are read beyond K: `pes`, `opt`, `hpes` or `hopt`; without it, as on finite traces
+    #[arg(long, value_name = "S", requires = "bound")]
+    pub(crate) semantics: Option<String>,
 }
 
 /// Which objective, and how to print what comes of it.
@@ -148,6 +168,8 @@ pub(crate) enum Command {
     Verify(Verify),
     /// Draw the map, with the paths of a strategy
     Plot(Plot),
+    /// Write a problem file from models and formulas of other tools
+    Import(Import),
     /// Run solvers and encodings over problems, and say who is right and who is fast
     Compare(Box<Compare>),
     /// List the solvers that were found
@@ -169,6 +191,8 @@ pub(crate) enum Command {
 pub(crate) struct Solve {
     #[command(flatten)]
     pub(crate) problem: Problem,
+    #[command(flatten)]
+    pub(crate) others: Others,
     #[command(flatten)]
     pub(crate) selection: Selection,
     /// How the answer is printed; `csv`, `ros`, `geojson` and `pddl`: the strategy alone, for other programs
@@ -256,6 +280,10 @@ pub(crate) struct Emit {
     /// The problem file (.hp)
     #[arg(value_name = "FILE", required_unless_present = "folder")]
     pub(crate) file: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) others: Others,
+    #[arg(skip)]
+    pub(crate) foreign: Option<Foreign>,
     /// Replaces the value of a constant
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     pub(crate) set: Vec<(String, String)>,
@@ -349,6 +377,8 @@ pub(crate) struct Horizon {
     #[command(flatten)]
     pub(crate) problem: Problem,
     #[command(flatten)]
+    pub(crate) others: Others,
+    #[command(flatten)]
     pub(crate) limit: Limit,
     #[command(flatten)]
     pub(crate) selection: Selection,
@@ -365,9 +395,22 @@ pub(crate) struct Limit {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct Import {
+    #[command(flatten)]
+    pub(crate) problem: Problem,
+    #[command(flatten)]
+    pub(crate) others: Others,
+    /// The problem file; without it, standard output
+    #[arg(short, long, value_name = "FILE.hp")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct Check {
     #[command(flatten)]
     pub(crate) problem: Problem,
+    #[command(flatten)]
+    pub(crate) others: Others,
     /// Exit status 2 if there is a warning
     #[arg(short = 'D', long)]
     pub(crate) deny_warnings: bool,
@@ -389,9 +432,11 @@ pub(crate) struct Verify {
     pub(crate) limit: Limit,
     #[command(flatten)]
     pub(crate) plan: Plan,
+    #[command(flatten)]
+    pub(crate) others: Others,
     /// What a solver printed for a query that `emit` wrote: its model, by (get-model) or (get-value (...));
     /// `-` is standard input
-    #[arg(long, value_name = "FILE", conflicts_with = "Plan", required_unless_present = "Plan")]
+    #[arg(long, value_name = "FILE", conflicts_with = "actions")]
     pub(crate) model: Option<PathBuf>,
     /// Saves the strategy that the model describes, as JSON
     #[arg(long, value_name = "FILE.json", requires = "model")]
@@ -404,7 +449,6 @@ pub(crate) struct Verify {
 
 /// A strategy of the user's.
 #[derive(Debug, Args)]
-#[group(multiple = false)]
 pub(crate) struct Plan {
     /// A strategy, as `solve --save` and `solve --format json|csv|geojson|pddl` write it, or the files with its paths; `-` is
     /// standard input
@@ -423,6 +467,8 @@ pub(crate) struct Plot {
     pub(crate) limit: Limit,
     #[command(flatten)]
     pub(crate) plan: Plan,
+    #[command(flatten)]
+    pub(crate) others: Others,
     #[command(flatten)]
     pub(crate) selection: Selection,
     /// An .svg (or .txt) file; without it, text on standard output

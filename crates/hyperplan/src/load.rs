@@ -59,6 +59,9 @@ impl Loaded {
     pub(crate) fn lower(args: &args::Problem, text: &str) -> (Lowered, SourceMap) {
         let folder = Beside(args.file.parent().unwrap_or(Path::new("")).to_owned());
         let overrides = Overrides { values: args.set.clone() };
+        if let Some(foreign) = &args.foreign {
+            return foreign.lower(&overrides);
+        }
         let mut sources = SourceMap::new();
         let lowered = read(&mut sources, &args.file.display().to_string(), text, &folder, &overrides);
         (lowered, sources)

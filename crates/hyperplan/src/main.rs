@@ -7,6 +7,7 @@ mod configuration;
 mod explain;
 mod failure;
 mod files;
+mod foreign;
 mod guard;
 mod instances;
 mod load;
@@ -27,10 +28,14 @@ use output::Output;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let cli = match args::Cli::try_parse() {
+    let mut cli = match args::Cli::try_parse() {
         Ok(cli) => cli,
         Err(e) => return usage(e),
     };
+    if let Err(failure) = foreign::gather(&mut cli) {
+        Output::new(cli.global.quiet, config::color(cli.global.color)).failure(&failure);
+        return failure.status.into();
+    }
     let run = || run(&cli);
     std::thread::scope(|scope| {
         // Its stack is the same on all systems.

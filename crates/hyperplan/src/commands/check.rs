@@ -19,7 +19,7 @@ pub(crate) fn run(args: &args::Check, verbose: bool, out: &mut Output) -> Result
     let good = !lowered.has_errors();
     if args.print {
         report::diagnostics(&sources, &lowered.diagnostics, out);
-        return if good { formatted(&source, out) } else { Ok(Exit::Input) };
+        return if good { formatted(&args.problem, &source, out) } else { Ok(Exit::Input) };
     }
     let mut lints = Lints::default();
     if good {
@@ -80,9 +80,11 @@ fn count(n: usize, what: &str) -> String {
 }
 
 /// Prints the file as its syntax tree says, with its comments.
-fn formatted(text: &str, out: &mut Output) -> Result {
-    let (file, _) = parse(SourceId(0), text);
-    out.verbatim(&print(&file, text))?;
+fn formatted(problem: &args::Problem, text: &str, out: &mut Output) -> Result {
+    match &problem.foreign {
+        Some(foreign) => out.verbatim(&foreign.text())?,
+        None => out.verbatim(&print(&parse(SourceId(0), text).0, text))?,
+    }
     out.flush()?;
     Ok(Exit::Good)
 }

@@ -24,7 +24,7 @@ pub(crate) fn run(args: &args::Emit, file: &Path, out: &mut Output) -> Result {
     for setting in settings(args)? {
         let mut set = args.set.clone();
         set.extend(setting.clone());
-        let problem = args::Problem { file: file.to_owned(), set };
+        let problem = args::Problem { file: file.to_owned(), set, foreign: args.foreign.clone() };
         let (loaded, consts) = Loaded::with_consts(&problem, &text, Instant::now(), out)?;
         let objectives = loaded.selected(args.selection.objective.as_deref(), false)?;
         let several = objectives.len() > 1 || setting.is_some() || encodings(args).count() > 1;

@@ -5,6 +5,7 @@ mod compare;
 mod emit;
 mod emit_family;
 mod horizon;
+mod import;
 mod manual;
 mod new;
 mod plot;
@@ -29,6 +30,7 @@ pub(crate) fn run(cli: &Cli, out: &mut Output) -> Result {
         Command::Horizon(args) => horizon::run(args, out),
         Command::Check(args) => check::run(args, verbose, out),
         Command::Verify(args) => verify::run(args, out),
+        Command::Import(args) => import::run(args, out),
         Command::Plot(args) => plot::run(args, out),
         Command::Compare(args) => compare::run(args, verbose, out),
         Command::Solvers(args) => solvers::run(args, out),

@@ -229,7 +229,7 @@ impl Parser<'_> {
                 let help = "a range of integers is written `0..2`, without braces";
                 return self.fail_with("the name of a value", Some(help.to_owned()));
             }
-            let values = self.names("the name of a value")?;
+            let values = self.separated(|parser| parser.action("the name of a value"))?;
             self.expect(Tok::RBrace, "`,` or `}`")?;
             return Ok(Type::Enum(values));
         }

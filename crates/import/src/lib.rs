@@ -1,0 +1,181 @@
+//! Files of other tools as problems: models in SMV, as NuSMV and its relatives write it, and formulas of HyperQB 1 and
+//! 2.0, HyperLasso and AutoHyper.
+//!
+//! What comes out is a syntax tree of the problem language whose places are those of the original files, so that
+//! whatever is found wrong with it later is shown where it was written. No file is read here.
+//!
+//! `lexer` and `parser` read models and formulas alike; `smv` puts modules together; `lower` turns expressions into those
+//! of the problem language, `system` models into systems.
+
+mod hq;
+mod lexer;
+mod lower;
+mod names;
+mod parser;
+mod smv;
+mod system;
+mod tree;
+
+use hyperplan_syntax::ast::{
+    Expr, ExprKind, File, Formula, Ident, Item, Objective, ObjectiveBody, Quantifier,
+};
+use hyperplan_syntax::{Diagnostic, SourceId, SourceMap, Span};
+use lower::{Lower, Named, Path, Place};
+use names::Names;
+use smv::model::Model;
+
+/// What kind of file it is, by its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A model in SMV.
+    Model,
+    /// A formula.
+    Formula,
+}
+
+impl Kind {
+    /// The kind of a file with that name, if it is one that is read here.
+    #[must_use]
+    pub fn of(name: &str) -> Option<Kind> {
+        match name.rsplit_once('.')?.1 {
+            "smv" | "nusmv" => Some(Kind::Model),
+            "hq" => Some(Kind::Formula),
+            _ => None,
+        }
+    }
+}
+
+/// A file to be imported.
+#[derive(Clone, Debug)]
+pub struct Input {
+    /// As the user calls it.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+}
+
+/// How formulas are read.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// `within K`: formulas whose operators have no bounds need it.
+    pub bound: Option<u32>,
+    /// `semantics S`.
+    pub semantics: Option<String>,
+}
+
+/// What some files mean.
+#[derive(Clone, Debug, Default)]
+pub struct Imported {
+    /// The problem, its places in the original files; incomplete where there are errors.
+    pub file: File,
+    /// What is wrong.
+    pub diagnostics: Vec<Diagnostic>,
+    /// What is doubtful, for who asks for that.
+    pub doubts: Vec<Diagnostic>,
+    /// Comments that say where things come from, for a file of its own.
+    pub about: String,
+}
+
+/// Makes a problem of models and formulas: a model for each quantifier, or one for all. The texts are added to
+/// `sources`.
+pub fn import(inputs: &[Input], options: &Options, sources: &mut SourceMap) -> Imported {
+    let mut imported = Imported::default();
+    let ids: Vec<SourceId> =
+        inputs.iter().map(|input| sources.add(input.name.clone(), input.text.as_str())).collect();
+    let of_kind = |kind| {
+        let all = inputs.iter().zip(&ids).filter(move |(input, _)| Kind::of(&input.name) == Some(kind));
+        all.map(|(input, id)| (input, *id)).collect::<Vec<_>>()
+    };
+    let (models, formulas) = (of_kind(Kind::Model), of_kind(Kind::Formula));
+    let mut distinct: Vec<(&Input, SourceId)> = Vec::new();
+    let numbers: Vec<usize> = models
+        .iter()
+        .map(|model| {
+            distinct.iter().position(|(known, _)| known.name == model.0.name).unwrap_or_else(|| {
+                distinct.push(*model);
+                distinct.len() - 1
+            })
+        })
+        .collect();
+    let found = &mut imported.diagnostics;
+    let modules: Vec<_> = distinct
+        .iter()
+        .map(|(input, id)| {
+            let (modules, wrong) = smv::parser::parse(*id, &input.text);
+            found.extend(wrong);
+            modules
+        })
+        .collect();
+    let named: Vec<Named<'_>> =
+        modules.iter().filter_map(|modules| Model::new(modules, found)).map(Named::new).collect();
+    if named.len() < distinct.len() || found.iter().any(Diagnostic::is_error) {
+        return imported;
+    }
+    let doubtful = |diagnostic: &mut Diagnostic| diagnostic.code == "open-case";
+    imported.doubts.extend(imported.diagnostics.extract_if(.., doubtful));
+    let mut lower = Lower::new(named);
+    let mut given = Names::default();
+    let mut systems: Vec<Ident> = Vec::new();
+    for (at, (input, _)) in distinct.iter().enumerate() {
+        let name = given.name(stem(&input.name));
+        imported.about += &format!("// {name}: {}\n", input.name);
+        let name = Ident { name, span: lower.models[at].model.span };
+        systems.push(name.clone());
+        let system = system::system(&mut lower, at, name, &mut imported.diagnostics);
+        imported.file.items.push(Item::System(system));
+    }
+    for (input, id) in formulas {
+        let name = given.name(stem(&input.name));
+        imported.about += &format!("// {name}: {}\n", input.name);
+        match objective(&mut lower, (name, input, id), &numbers, &systems, options) {
+            Ok(objective) => imported.file.items.push(Item::Objective(objective)),
+            Err(error) => imported.diagnostics.push(*error),
+        }
+    }
+    imported
+}
+
+/// A formula as an objective.
+fn objective(
+    lower: &mut Lower<'_>,
+    (name, input, id): (String, &Input, SourceId),
+    models: &[usize],
+    systems: &[Ident],
+    options: &Options,
+) -> parser::Parse<Objective> {
+    let formula = hq::parse(id, &input.text)?;
+    let whole = Span::new(id, 0..0);
+    let count = formula.quantifiers.len();
+    if models.len() != 1 && models.len() != count {
+        let message = format!("{count} paths are quantified, and there are {} models", models.len());
+        let span = formula.quantifiers[0].1.span;
+        let help = "give one model for all of them, or one for each, in the order of the quantifiers";
+        return lower::wrong_with("which-model", span, message, help);
+    }
+    let mut given = Names::default();
+    let mut paths = Vec::new();
+    let mut quantifiers = Vec::new();
+    for (at, (forall, path)) in formula.quantifiers.iter().enumerate() {
+        let model = if models.len() == 1 { models[0] } else { models[at] };
+        let ident = Ident { name: given.name(&path.name), span: path.span };
+        paths.push(Path { name: path.name.clone(), ident: ident.clone(), model });
+        let system = (systems.len() > 1).then(|| Ident { span: path.span, ..systems[model].clone() });
+        quantifiers.push(Quantifier { forall: *forall, path: ident, system });
+    }
+    lower.paths = paths;
+    let body = lower.truth(Place::main(models[0]), &formula.body);
+    lower.paths = Vec::new();
+    let body = body?;
+    let within = options.bound.map(|bound| Expr { kind: ExprKind::Number(bound.to_string()), span: whole });
+    let semantics = options.semantics.clone().filter(|_| within.is_some());
+    let semantics = semantics.map(|name| Ident { name, span: whole });
+    let body =
+        ObjectiveBody::Formula(Formula { defines: Vec::new(), quantifiers, body, minimize: Vec::new() });
+    Ok(Objective { name: Ident { name, span: formula.quantifiers[0].1.span }, within, semantics, body })
+}
+
+/// The file's name without folders and ending.
+fn stem(name: &str) -> &str {
+    let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    file.rsplit_once('.').map_or(file, |(stem, _)| stem)
+}
