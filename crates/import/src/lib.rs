@@ -124,6 +124,7 @@ pub fn import(inputs: &[Input], options: &Options, sources: &mut SourceMap) -> I
         let system = system::system(&mut lower, at, name, &mut imported.diagnostics);
         imported.file.items.push(Item::System(system));
     }
+    let mut given = Names::default();
     for (input, id) in formulas {
         let name = given.name(stem(&input.name));
         imported.about += &format!("// {name}: {}\n", input.name);

@@ -26,12 +26,13 @@ mod level {
     pub(super) const COMPARE: u8 = 8;
     pub(super) const IN: u8 = 9;
     pub(super) const UNION: u8 = 10;
-    pub(super) const SHIFT: u8 = 11;
-    pub(super) const SUM: u8 = 12;
-    pub(super) const PRODUCT: u8 = 13;
-    pub(super) const NEG: u8 = 14;
-    pub(super) const CONCAT: u8 = 15;
-    pub(super) const NOT: u8 = 16;
+    pub(super) const RANGE: u8 = 11;
+    pub(super) const SHIFT: u8 = 12;
+    pub(super) const SUM: u8 = 13;
+    pub(super) const PRODUCT: u8 = 14;
+    pub(super) const NEG: u8 = 15;
+    pub(super) const CONCAT: u8 = 16;
+    pub(super) const NOT: u8 = 17;
 }
 
 /// An operator between two operands.
@@ -40,6 +41,7 @@ enum Op {
     And,
     Or,
     Union,
+    Range,
     Plus,
     Minus,
     Xnor,
@@ -176,6 +178,7 @@ impl<'a> Parser<'a> {
                 }
                 Kind::Sum(items)
             }
+            Op::Range => Kind::Range(Box::new(left), Box::new(self.operators(level + 1)?)),
             Op::If => return self.condition(left, start),
             Op::Xnor => Kind::Infix(Infix::Iff, Box::new(left), Box::new(self.operators(level + 1)?)),
             Op::Infix(Infix::Implies) => {
@@ -244,6 +247,7 @@ impl<'a> Parser<'a> {
             ">=" => infix(Infix::Ge, level::COMPARE),
             "in" => infix(Infix::In, level::IN),
             "union" => Some((Op::Union, level::UNION)),
+            ".." => Some((Op::Range, level::RANGE)),
             "<<" => infix(Infix::ShiftLeft, level::SHIFT),
             ">>" => infix(Infix::ShiftRight, level::SHIFT),
             "+" => Some((Op::Plus, level::SUM)),
@@ -263,12 +267,7 @@ impl<'a> Parser<'a> {
             (Tok::Number, digits) => match digits.parse() {
                 Ok(number) => {
                     self.bump();
-                    if self.eat("..") {
-                        let lo = Expr::new(Kind::Int(number), start);
-                        Kind::Range(Box::new(lo), Box::new(self.sum()?))
-                    } else {
-                        Kind::Int(number)
-                    }
+                    Kind::Int(number)
                 }
                 Err(_) => return self.refuse(start, "the number does not fit in 62 bits", ""),
             },

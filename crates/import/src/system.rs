@@ -425,16 +425,10 @@ impl<'t> Builder<'_, 't, '_> {
     /// A value as one of a variable's type. Integers outside its range make no step.
     fn of_type(&mut self, value: Val, ty: &Ty, span: Span) -> Parse<ast::Expr> {
         let expected = match (value, ty) {
-            (Val::Bool(a), Ty::Bool) | (Val::Int(a, ..), Ty::Numbers(_)) => return Ok(a),
+            // Integers outside the range make no step.
+            (Val::Bool(a), Ty::Bool) | (Val::Int(a, ..), Ty::Int(..) | Ty::Numbers(_)) => return Ok(a),
             (Val::Int(_, 0, 0), Ty::Bool) => return Ok(e(ExprKind::Bool(false), span)),
             (Val::Int(_, 1, 1), Ty::Bool) => return Ok(e(ExprKind::Bool(true), span)),
-            (Val::Int(a, lo, hi), Ty::Int(least, most)) => {
-                if hi < i128::from(*least) || lo > i128::from(*most) {
-                    let message = format!("the value is never in {least}..{most}");
-                    return wrong("out-of-range", a.span, message);
-                }
-                return Ok(a);
-            }
             (Val::Word(a, own), Ty::Word(word)) if own == *word => return Ok(a),
             (Val::Int(a, lo, hi), Ty::Word(_)) if lo == hi => return Ok(a),
             (Val::Symbol(symbol), Ty::Enum(of)) => return self.lower.as_value_of(symbol, of, span),

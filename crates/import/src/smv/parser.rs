@@ -181,13 +181,8 @@ fn declared_type(parser: &mut Parser<'_>) -> Parse<Type> {
         }
         _ => {
             let lo = parser.sum()?;
-            match lo.kind {
-                crate::tree::Kind::Range(lo, hi) => TypeKind::Range(*lo, *hi),
-                _ => {
-                    parser.expect("..")?;
-                    TypeKind::Range(lo, parser.sum()?)
-                }
-            }
+            parser.expect("..")?;
+            TypeKind::Range(lo, parser.sum()?)
         }
     };
     Ok(Type { kind, span: parser.since(start.span) })
@@ -201,14 +196,9 @@ fn array(parser: &mut Parser<'_>) -> Parse<Type> {
         if around.len() >= 8 {
             return parser.refuse(start, "arrays of more than 8 dimensions are not supported", "");
         }
-        let range = parser.sum()?;
-        let (lo, hi) = match range.kind {
-            crate::tree::Kind::Range(lo, hi) => (*lo, *hi),
-            _ => {
-                parser.expect("..")?;
-                (range, parser.sum()?)
-            }
-        };
+        let lo = parser.sum()?;
+        parser.expect("..")?;
+        let hi = parser.sum()?;
         parser.expect("of")?;
         around.push((start, lo, hi));
     }
