@@ -1,10 +1,10 @@
 //! What may be typed. What is meant by it is decided in [`crate::config`].
 
+use crate::foreign::Foreign;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use hyperplan_family as family;
 use hyperplan_problem::answer::{Quantifiers, States, WitnessPath};
-use crate::foreign::Foreign;
 use std::path::PathBuf;
 
 /// Plans robot motion from objectives that relate several paths at once.

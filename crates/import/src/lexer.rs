@@ -105,7 +105,8 @@ fn word(text: &str) -> usize {
 fn number(text: &str) -> (Tok, usize) {
     let bytes = text.as_bytes();
     let all = text.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(text.len());
-    let is_word = bytes[0] == b'0' && bytes.get(1).is_some_and(|c| matches!(c, b'u' | b's' | b'b' | b'd' | b'h' | b'o'));
+    let is_word = bytes[0] == b'0'
+        && bytes.get(1).is_some_and(|c| matches!(c, b'u' | b's' | b'b' | b'd' | b'h' | b'o'));
     if is_word {
         return (Tok::WordNumber, all);
     }

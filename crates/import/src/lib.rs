@@ -17,7 +17,7 @@ mod system;
 mod tree;
 
 use hyperplan_syntax::ast::{
-    Expr, ExprKind, File, Formula, Ident, Item, Objective, ObjectiveBody, Quantifier,
+    self, Expr, ExprKind, File, Formula, Ident, Item, Objective, ObjectiveBody, Quantifier,
 };
 use hyperplan_syntax::{Diagnostic, SourceId, SourceMap, Span};
 use lower::{Lower, Named, Path, Place};
@@ -109,6 +109,7 @@ pub fn import(inputs: &[Input], options: &Options, sources: &mut SourceMap) -> I
     let named: Vec<Named<'_>> =
         modules.iter().filter_map(|modules| Model::new(modules, found)).map(Named::new).collect();
     if named.len() < distinct.len() || found.iter().any(Diagnostic::is_error) {
+        found.sort_by_key(|diagnostic| diagnostic.span);
         return imported;
     }
     let doubtful = |diagnostic: &mut Diagnostic| diagnostic.code == "open-case";
@@ -133,6 +134,13 @@ pub fn import(inputs: &[Input], options: &Options, sources: &mut SourceMap) -> I
             Err(error) => imported.diagnostics.push(*error),
         }
     }
+    // What comes after that is too much as well.
+    let mut large = 0;
+    imported.diagnostics.retain(|diagnostic| {
+        large += usize::from(diagnostic.code == "too-large");
+        diagnostic.code != "too-large" || large == 1
+    });
+    imported.diagnostics.sort_by_key(|diagnostic| diagnostic.span);
     imported
 }
 
@@ -163,6 +171,9 @@ fn objective(
         let system = (systems.len() > 1).then(|| Ident { span: path.span, ..systems[model].clone() });
         quantifiers.push(Quantifier { forall: *forall, path: ident, system });
     }
+    if options.bound.is_none() {
+        bounded(&formula.body)?;
+    }
     lower.paths = paths;
     let body = lower.truth(Place::main(models[0]), &formula.body);
     lower.paths = Vec::new();
@@ -173,6 +184,26 @@ fn objective(
     let body =
         ObjectiveBody::Formula(Formula { defines: Vec::new(), quantifiers, body, minimize: Vec::new() });
     Ok(Objective { name: Ident { name, span: formula.quantifiers[0].1.span }, within, semantics, body })
+}
+
+/// Refuses operators without bounds, where the formula has no bound as a whole.
+fn bounded(body: &tree::Expr) -> parser::Parse<()> {
+    let mut stack = vec![body];
+    while let Some(e) = stack.pop() {
+        let endless = match &e.kind {
+            tree::Kind::Unary(op, None, _) => {
+                matches!(op, ast::UnaryOp::Finally | ast::UnaryOp::Globally)
+            }
+            tree::Kind::Binary(_, bounds, ..) => bounds.is_none(),
+            _ => false,
+        };
+        if endless {
+            let message = "this operator has no end, and paths of how many steps are meant is not said";
+            return lower::wrong_with("unbounded-operator", e.span, message, "say it with `--bound K`");
+        }
+        stack.extend(e.kind.children());
+    }
+    Ok(())
 }
 
 /// The file's name without folders and ending.

@@ -273,7 +273,16 @@ impl<'a> Parser<'a> {
             },
             (Tok::WordNumber, text) => {
                 self.bump();
-                word_number(text).map_or_else(|| self.refuse(start, "this is no constant of a word type that is supported", "write `0ud8_255`, `0sd8_-1`, `0b8_1010` or `0uh8_ff`, of at most 40 bits"), Ok)?
+                word_number(text).map_or_else(
+                    || {
+                        self.refuse(
+                            start,
+                            "this is no constant of a word type that is supported",
+                            "write `0ud8_255`, `0sd8_-1`, `0b8_1010` or `0uh8_ff`, of at most 40 bits",
+                        )
+                    },
+                    Ok,
+                )?
             }
             (Tok::Word, "TRUE" | "true") => self.constant(true),
             (Tok::Word, "FALSE" | "false") => self.constant(false),
@@ -325,8 +334,19 @@ impl<'a> Parser<'a> {
     /// Whether the letter at hand is an operator: in a formula, with no path behind it.
     fn begins_temporal(&self) -> bool {
         let behind = self.token_at(2).text;
-        let path = self.token_at(1).text == "[" && self.is_path(behind);
-        self.paths.is_some() && !path && self.token_at(1).tok != Tok::Eof
+        let next = self.token_at(1);
+        let operand = match next.tok {
+            Tok::Sign => match next.text {
+                "[" => !self.is_path(behind),
+                sign => matches!(sign, "(" | "{" | "*" | "!" | "~" | "¬" | "-"),
+            },
+            Tok::Word => {
+                !matches!(next.text, "U" | "R" | "W" | "M" | "xor" | "xnor" | "in" | "union" | "mod")
+            }
+            Tok::Number | Tok::WordNumber | Tok::Text => true,
+            Tok::Eof => false,
+        };
+        self.paths.is_some() && operand
     }
 
     fn is_path(&self, name: &str) -> bool {

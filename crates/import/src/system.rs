@@ -141,6 +141,7 @@ impl<'t> Builder<'_, 't, '_> {
     /// A label's expression and type, if a label can be that.
     fn definition(&mut self, scope: ScopeId, body: &'t Expr) -> Parse<Option<(ast::Expr, Shape)>> {
         let place = self.place(scope);
+        without_next(body, "a definition")?;
         if self.lower.is_set(place, body, 0) {
             return Ok(None);
         }
@@ -169,7 +170,9 @@ impl<'t> Builder<'_, 't, '_> {
                     stack.extend(e.kind.children().into_iter().map(|child| (scope, child, depth)));
                     let Kind::Name(name) = &e.kind else { continue };
                     match model.meaning(scope, name) {
-                        Some(Meaning::Symbol(full, _) | Meaning::Bits(full, _)) => read.extend(numbers.get(full)),
+                        Some(Meaning::Symbol(full, _) | Meaning::Bits(full, _)) => {
+                            read.extend(numbers.get(full))
+                        }
                         Some(Meaning::Argument(scope, argument)) if depth < 100 => {
                             stack.push((scope, argument, depth + 1));
                         }
@@ -217,7 +220,8 @@ impl<'t> Builder<'_, 't, '_> {
 
     /// What is assigned to each variable at first, by a step, and always.
     fn assignments(&mut self) -> (Assigned<'t>, Assigned<'t>, Assigned<'t>) {
-        let (mut first, mut next, mut every) = (Assigned::default(), Assigned::default(), Assigned::default());
+        let (mut first, mut next, mut every) =
+            (Assigned::default(), Assigned::default(), Assigned::default());
         let assigns = self.lower.models[self.model].model.assigns.clone();
         for (scope, moment, left, right) in assigns {
             let target = self.target(scope, left, moment);
@@ -228,14 +232,19 @@ impl<'t> Builder<'_, 't, '_> {
                 Moment::Every => &mut every,
             };
             if let Some((_, _, earlier)) = table.insert(full.clone(), (scope, right, left.span)) {
-                let error = Diagnostic::error("repeated-update", left.span, format!("a second assignment to `{full}`"));
+                let error = Diagnostic::error(
+                    "repeated-update",
+                    left.span,
+                    format!("a second assignment to `{full}`"),
+                );
                 self.found.push(error.with_related(earlier, "the first one"));
             }
         }
         for (full, (_, _, span)) in &every {
             if let Some((_, _, other)) = first.get(full).or(next.get(full)) {
                 let message = format!("`{full}` is assigned always, and also by `init` or `next`");
-                self.found.push(Diagnostic::error("repeated-update", *span, message).with_related(*other, "here"));
+                self.found
+                    .push(Diagnostic::error("repeated-update", *span, message).with_related(*other, "here"));
             }
         }
         (first, next, every)
@@ -245,7 +254,11 @@ impl<'t> Builder<'_, 't, '_> {
         let model = &self.lower.models[self.model].model;
         match model.symbol(scope, left) {
             Some((full, Symbol::Var(var))) => match (var.role, moment) {
-                (Role::Input, _) => wrong("unsupported", left.span, format!("`{full}` is an input: nothing is assigned to it")),
+                (Role::Input, _) => wrong(
+                    "unsupported",
+                    left.span,
+                    format!("`{full}` is an input: nothing is assigned to it"),
+                ),
                 (Role::Frozen, Moment::Next | Moment::Every) => {
                     wrong("unsupported", left.span, format!("`{full}` is frozen: it never changes"))
                 }
@@ -267,14 +280,16 @@ impl<'t> Builder<'_, 't, '_> {
         let (inits, invars, transes) = (model.inits.clone(), model.invars.clone(), model.transes.clone());
         for (scope, constraint) in inits {
             let place = self.place(scope);
-            let truth = self.lower.truth(place, constraint);
+            let plain = without_next(constraint, "`INIT`");
+            let truth = plain.and_then(|()| self.lower.truth(place, constraint));
             if let Some(said) = self.note(truth) {
                 self.items.push(SystemItem::Init(said));
             }
         }
         for (scope, constraint) in invars {
             let place = self.place(scope);
-            let truth = self.lower.truth(place, constraint);
+            let plain = without_next(constraint, "`INVAR`");
+            let truth = plain.and_then(|()| self.lower.truth(place, constraint));
             let Some(now) = self.note(truth) else { continue };
             self.items.push(SystemItem::Init(now));
             let later = self.lower.truth(Place { next: true, ..place }, constraint);
@@ -361,8 +376,8 @@ impl<'t> Builder<'_, 't, '_> {
                     let place = self.place(*scope);
                     let holds = self.is_assigned(place, &full, value, *span, true);
                     if let Some(said) = self.note(holds) {
-                self.items.push(SystemItem::Trans(said));
-            }
+                        self.items.push(SystemItem::Trans(said));
+                    }
                     (Some(anything(&var)), var.span)
                 }
                 None => {
@@ -373,7 +388,8 @@ impl<'t> Builder<'_, 't, '_> {
             let Some(value) = value else { continue };
             // What keeps its value needs no update.
             let name = self.ident(&full, span);
-            if matches!(&value, UpdateValue::Assign(ast::Expr { kind: ExprKind::Name(kept), .. }) if *kept == name.name) {
+            if matches!(&value, UpdateValue::Assign(ast::Expr { kind: ExprKind::Name(kept), .. }) if *kept == name.name)
+            {
                 continue;
             }
             self.updates.push(Update { var: name, value });
@@ -459,6 +475,16 @@ fn anything(var: &Var) -> UpdateValue {
             Set::List(of.iter().map(value).collect(), span)
         }
     })
+}
+
+/// Refuses `next` where no step is spoken of.
+fn without_next(expr: &Expr, what: &str) -> Parse<()> {
+    if !reads_next(expr) {
+        return Ok(());
+    }
+    let message = format!("{what} speaks of one state, and `next` of the one after it");
+    let help = "`next` belongs into `TRANS`, and to the right of `next(x) :=`";
+    crate::lower::wrong_with("misplaced-next", expr.span, message, help)
 }
 
 /// Whether an expression speaks of the state after a step.

@@ -31,7 +31,9 @@ impl Kind {
             }
             Kind::Sum(es) => es.iter().map(|(_, e)| e).collect(),
             Kind::Infix(_, a, b) | Kind::Range(a, b) | Kind::Binary(_, _, a, b) => vec![a, b],
-            Kind::Case(branches, last) => branches.iter().flat_map(|(c, a)| [c, a]).chain([&**last]).collect(),
+            Kind::Case(branches, last) => {
+                branches.iter().flat_map(|(c, a)| [c, a]).chain([&**last]).collect()
+            }
         }
     }
 }

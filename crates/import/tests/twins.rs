@@ -180,7 +180,9 @@ impl Number {
             Number::Constant(n) => n.to_string(),
             Number::Read(var, true) => format!("next({})", VARS[*var].0),
             Number::Read(var, false) => VARS[*var].0.to_owned(),
-            Number::Sum(a, minus, b) => format!("({} {} {})", a.show(), if *minus { "-" } else { "+" }, b.show()),
+            Number::Sum(a, minus, b) => {
+                format!("({} {} {})", a.show(), if *minus { "-" } else { "+" }, b.show())
+            }
             Number::Times(a, b) => format!("({} * {})", a.show(), b.show()),
             Number::Divided(a, remainder, by) => {
                 format!("({} {} {by})", a.show(), if *remainder { "mod" } else { "/" })
@@ -278,7 +280,10 @@ impl Model {
             (0..count).map(|_| Truth::random(random, 1, scope)).collect::<Vec<_>>()
         };
         Model {
-            defines: Defines { truth: Truth::random(random, 1, plain), number: Number::random(random, 1, plain) },
+            defines: Defines {
+                truth: Truth::random(random, 1, plain),
+                number: Number::random(random, 1, plain),
+            },
             next,
             init: some(random, defined, 2),
             invar: some(random, defined, 4),

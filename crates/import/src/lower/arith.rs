@@ -94,7 +94,8 @@ impl Lower<'_> {
         } else if left.1 == left.2 {
             scaled(right.0, left.1)
         } else {
-            let (few, other) = if left.2 - left.1 <= right.2 - right.1 { (left, right) } else { (right, left) };
+            let (few, other) =
+                if left.2 - left.1 <= right.2 - right.1 { (left, right) } else { (right, left) };
             let help = "one factor should be a constant, or have few values";
             self.by_value(few, span, help, &mut |lower, n| {
                 let other = lower.copy(&other.0)?;

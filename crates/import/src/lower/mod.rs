@@ -5,8 +5,8 @@
 //! the values of one of them. Names of definitions stay names wherever a label can have their value.
 
 mod arith;
-mod symbols;
 mod sets;
+mod symbols;
 mod words;
 
 use crate::names::Names;
@@ -22,7 +22,7 @@ use std::rc::Rc;
 pub(crate) use symbols::Symbolic;
 
 /// Nodes of one import; what would make more repeats itself.
-const MAX_NODES: usize = 20_000_000;
+const MAX_NODES: usize = 6_000_000;
 
 /// Nesting of expressions once parameters and definitions are put in.
 const MAX_DEPTH: u32 = 400;
@@ -200,7 +200,9 @@ impl<'t> Lower<'t> {
             // Older models write truth values so.
             Val::Int(_, 0, 0) => Ok(e(ExprKind::Bool(false), span)),
             Val::Int(_, 1, 1) => Ok(e(ExprKind::Bool(true), span)),
-            other => wrong("type-mismatch", span, format!("expected a truth value, found {}", other.describe())),
+            other => {
+                wrong("type-mismatch", span, format!("expected a truth value, found {}", other.describe()))
+            }
         }
     }
 
@@ -332,7 +334,9 @@ impl<'t> Lower<'t> {
                 match (left, right) {
                     (Val::Int(a, ..), Val::Int(b, ..)) => Ok(Val::Bool(compare(op, a, b, span))),
                     (Val::Word(a, w), Val::Word(b, v)) if w == v => Ok(Val::Bool(compare(op, a, b, span))),
-                    (Val::Word(a, _), Val::Int(b, lo, hi)) | (Val::Int(b, lo, hi), Val::Word(a, _)) if lo == hi => {
+                    (Val::Word(a, _), Val::Int(b, lo, hi)) | (Val::Int(b, lo, hi), Val::Word(a, _))
+                        if lo == hi =>
+                    {
                         Ok(Val::Bool(compare(op, a, b, span)))
                     }
                     (left, right) => {
@@ -381,13 +385,7 @@ impl<'t> Lower<'t> {
         }
     }
 
-    fn case(
-        &mut self,
-        place: Place<'_>,
-        branches: &[(Expr, Expr)],
-        last: &Expr,
-        span: Span,
-    ) -> Parse<Val> {
+    fn case(&mut self, place: Place<'_>, branches: &[(Expr, Expr)], last: &Expr, span: Span) -> Parse<Val> {
         let mut conditions = Vec::with_capacity(branches.len());
         let mut values = Vec::with_capacity(branches.len());
         for (condition, value) in branches {
@@ -399,14 +397,20 @@ impl<'t> Lower<'t> {
     }
 
     /// The value beside the first condition that holds, or the last.
-    pub(crate) fn joined(&mut self, conditions: Vec<ast::Expr>, mut values: Vec<Val>, span: Span) -> Parse<Val> {
+    pub(crate) fn joined(
+        &mut self,
+        conditions: Vec<ast::Expr>,
+        mut values: Vec<Val>,
+        span: Span,
+    ) -> Parse<Val> {
         // Numbers among symbols are symbols.
         if values.iter().any(|value| matches!(value, Val::Symbol(_))) {
             return self.joined_symbols(conditions, values, span);
         }
         // Truth values may be written as numbers.
         if values.iter().any(|value| matches!(value, Val::Bool(_))) {
-            values = values.into_iter().map(|v| self.as_truth(v, span).map(Val::Bool)).collect::<Parse<_>>()?;
+            values =
+                values.into_iter().map(|v| self.as_truth(v, span).map(Val::Bool)).collect::<Parse<_>>()?;
         }
         let mut whole = values.pop().unwrap_or_else(|| Val::Bool(e(ExprKind::Bool(false), span)));
         let mut kept = Vec::with_capacity(values.len());
@@ -459,9 +463,7 @@ impl<'t> Lower<'t> {
                 Ok(match &var.ty {
                     Ty::Bool => Val::Bool(read),
                     Ty::Int(lo, hi) => Val::Int(read, i128::from(*lo), i128::from(*hi)),
-                    Ty::Numbers(all) => {
-                        Val::Int(read, i128::from(all[0]), i128::from(all[all.len() - 1]))
-                    }
+                    Ty::Numbers(all) => Val::Int(read, i128::from(all[0]), i128::from(all[all.len() - 1])),
                     Ty::Word(word) => Val::Word(read, *word),
                     Ty::Enum(values) => Val::Symbol(Symbolic::Read(read, values.clone())),
                 })
@@ -480,7 +482,8 @@ impl<'t> Lower<'t> {
                 Some(Defined::WrittenOut) | None => self.value(Place { scope: *scope, ..place }, body),
             },
             Symbol::Array(..) | Symbol::Instance(..) => {
-                let what = if matches!(symbol, Symbol::Array(..)) { "an array" } else { "an instance of a module" };
+                let what =
+                    if matches!(symbol, Symbol::Array(..)) { "an array" } else { "an instance of a module" };
                 wrong("type-mismatch", span, format!("`{full}` is {what}, and has no value as a whole"))
             }
         }
@@ -520,7 +523,8 @@ impl<'t> Lower<'t> {
             return error.with_help(format!("a hyphen is part of a name; write `{first} - ...` with blanks"));
         }
         if !self.paths.is_empty() && place.path.is_none() {
-            return error.with_help(format!("what is read of a path is written `{full}[{}]`", self.paths[0].name));
+            return error
+                .with_help(format!("what is read of a path is written `{full}[{}]`", self.paths[0].name));
         }
         let prefix = &model.scopes[place.scope.0].prefix;
         let known = model.symbols.keys().filter_map(|known| known.strip_prefix(prefix.as_str()));
@@ -538,7 +542,8 @@ impl<'t> Lower<'t> {
         };
         let (number, lo, hi) = self.integer(place, index)?;
         if lo < i128::from(bounds.0) || hi > i128::from(bounds.1) {
-            let message = format!("the index may be {lo}..{hi}, and `{array}` has elements {}..{}", bounds.0, bounds.1);
+            let message =
+                format!("the index may be {lo}..{hi}, and `{array}` has elements {}..{}", bounds.0, bounds.1);
             return wrong("out-of-range", index.span, message);
         }
         let (mut conditions, mut values) = (Vec::new(), Vec::new());
@@ -578,7 +583,9 @@ fn push_children<'a>(expr: &'a ast::Expr, stack: &mut Vec<&'a ast::Expr>) {
         | ExprKind::Compare(_, a, b)
         | ExprKind::Arith(_, a, b)
         | ExprKind::Binary(_, _, a, b) => stack.extend([&**a, b]),
-        ExprKind::If(branches, last) => stack.extend(branches.iter().flat_map(|(c, a)| [c, a]).chain([&**last])),
+        ExprKind::If(branches, last) => {
+            stack.extend(branches.iter().flat_map(|(c, a)| [c, a]).chain([&**last]))
+        }
         _ => {}
     }
 }

@@ -6,8 +6,8 @@ use crate::parser::Parse;
 use crate::smv::model::Symbol;
 use crate::smv::resolve::Meaning;
 use crate::tree::{Expr, Kind};
-use hyperplan_syntax::ast::{self, ExprKind, Set};
 use hyperplan_syntax::Span;
+use hyperplan_syntax::ast::{self, ExprKind, Set};
 
 /// Values of a range that are listed, where it is joined with other sets.
 const MAX_LISTED: i128 = 10_000;
@@ -132,9 +132,11 @@ impl<'t> Lower<'t> {
                 }
                 Ok(Choice::If(kept, Box::new(self.union(*last, other, span)?)))
             }
-            (Choice::Range((_, lo, end), (_, start, hi)), other) | (other, Choice::Range((_, lo, end), (_, start, hi))) => {
+            (Choice::Range((_, lo, end), (_, start, hi)), other)
+            | (other, Choice::Range((_, lo, end), (_, start, hi))) => {
                 if lo != end || start != hi || hi - lo >= MAX_LISTED {
-                    let message = "a union with a range whose ends vary, or that is very long, is not supported";
+                    let message =
+                        "a union with a range whose ends vary, or that is very long, is not supported";
                     return wrong("unsupported", span, message);
                 }
                 let listed = (lo..=hi).map(|n| Val::Int(super::int(n, span), n, n)).collect();

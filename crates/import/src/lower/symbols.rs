@@ -30,7 +30,9 @@ impl Symbolic {
         while let Some(symbol) = stack.pop() {
             match symbol {
                 Symbolic::Constant(name) => constants.push(name),
-                Symbolic::Read(_, of) if found.as_ref().is_none_or(|found| found == of) => found = Some(of.clone()),
+                Symbolic::Read(_, of) if found.as_ref().is_none_or(|found| found == of) => {
+                    found = Some(of.clone())
+                }
                 Symbolic::Read(..) => return None,
                 Symbolic::Choice(branches, last) => {
                     stack.extend(branches.iter().map(|(_, symbol)| symbol).chain([&**last]));
@@ -60,7 +62,12 @@ impl Lower<'_> {
     }
 
     /// A symbol as a value of that enumeration. What may be none of its values is refused.
-    pub(crate) fn as_value_of(&mut self, symbol: Symbolic, of: &Rc<[String]>, span: Span) -> Parse<ast::Expr> {
+    pub(crate) fn as_value_of(
+        &mut self,
+        symbol: Symbolic,
+        of: &Rc<[String]>,
+        span: Span,
+    ) -> Parse<ast::Expr> {
         match symbol {
             Symbolic::Constant(name) if of.contains(&name) => Ok(constant(&name, span)),
             Symbolic::Constant(name) => {
@@ -71,9 +78,14 @@ impl Lower<'_> {
             Symbolic::Read(read, own) => {
                 if let Some(other) = own.iter().find(|value| !of.contains(value)) {
                     let values = of.join(", ");
-                    return wrong("type-mismatch", span, format!("this may be `{other}`, which is not one of {{{values}}}"));
+                    return wrong(
+                        "type-mismatch",
+                        span,
+                        format!("this may be `{other}`, which is not one of {{{values}}}"),
+                    );
                 }
-                let (last, rest) = own.split_last().map_or((String::new(), &own[..]), |(l, r)| (l.clone(), r));
+                let (last, rest) =
+                    own.split_last().map_or((String::new(), &own[..]), |(l, r)| (l.clone(), r));
                 let mut branches = Vec::new();
                 for value in rest {
                     let read = self.copy(&read)?;

@@ -131,7 +131,8 @@ impl<'t> Lower<'t> {
             match value {
                 Val::Word(a, own) if own.width == word.width => all.push(self.unsigned(a, own, span)),
                 other => {
-                    let message = format!("expected a word of {} bits, found {}", word.width, other.describe());
+                    let message =
+                        format!("expected a word of {} bits, found {}", word.width, other.describe());
                     return wrong("type-mismatch", span, message);
                 }
             }
@@ -187,7 +188,13 @@ impl<'t> Lower<'t> {
                 let (tested, other) = (self.copy(&a)?, self.copy(&a)?);
                 let negative = compare(CompareOp::Lt, tested, int(0, span), span);
                 let minus = e(ExprKind::Neg(Box::new(other)), span);
-                let least = if lo > 0 { lo } else if hi < 0 { -hi } else { 0 };
+                let least = if lo > 0 {
+                    lo
+                } else if hi < 0 {
+                    -hi
+                } else {
+                    0
+                };
                 Ok(Val::Int(choice(vec![(negative, minus)], a, span), least, lo.abs().max(hi.abs())))
             }
             ("min" | "max", [a, b]) => {
@@ -204,7 +211,9 @@ impl<'t> Lower<'t> {
             }
             ("bool", [a]) => match self.value(place, a)? {
                 Val::Bool(a) => Ok(Val::Bool(a)),
-                Val::Int(a, ..) | Val::Word(a, _) => Ok(Val::Bool(compare(CompareOp::Ne, a, int(0, span), span))),
+                Val::Int(a, ..) | Val::Word(a, _) => {
+                    Ok(Val::Bool(compare(CompareOp::Ne, a, int(0, span), span)))
+                }
                 other => wrong("type-mismatch", a.span, format!("{} is no number", other.describe())),
             },
             ("toint", [a]) => match self.value(place, a)? {
@@ -244,17 +253,23 @@ impl<'t> Lower<'t> {
                     return wrong("type-mismatch", a.span, "expected a word");
                 };
                 let width = if name.name == "extend" { i64::from(word.width) + by } else { by };
-                let Some(width) = u32::try_from(width).ok().filter(|width| (1..=MAX_WIDTH).contains(width)) else {
+                let Some(width) = u32::try_from(width).ok().filter(|width| (1..=MAX_WIDTH).contains(width))
+                else {
                     return wrong("unsupported", span, format!("words have 1 to {MAX_WIDTH} bits"));
                 };
                 let (lo, hi) = word.bounds();
                 let word = Word { width, ..word };
                 Ok(self.wrapped(a, i128::from(lo), i128::from(hi), word, span))
             }
-            (known @ ("abs" | "min" | "max" | "bool" | "toint" | "word1" | "signed" | "unsigned" | "uwconst"
-            | "swconst" | "extend" | "resize"), _) => {
-                wrong("argument-count", span, format!("`{known}` does not take {} arguments", arguments.len()))
-            }
+            (
+                known @ ("abs" | "min" | "max" | "bool" | "toint" | "word1" | "signed" | "unsigned"
+                | "uwconst" | "swconst" | "extend" | "resize"),
+                _,
+            ) => wrong(
+                "argument-count",
+                span,
+                format!("`{known}` does not take {} arguments", arguments.len()),
+            ),
             (other, _) => wrong("unsupported", name.span, format!("the function `{other}` is not supported")),
         }
     }

@@ -159,7 +159,8 @@ impl<'t> Model<'t> {
         if let Some(first) = self.symbols.get(&name) {
             // HyperQB 2.0 has models that declare what they define.
             if matches!((first, &symbol), (Symbol::Var(_), Symbol::Define(..))) {
-                let message = format!("`{name}` is declared as a variable, and defined: it is what is defined");
+                let message =
+                    format!("`{name}` is declared as a variable, and defined: it is what is defined");
                 let warning = Diagnostic::warning("duplicate-name", symbol.span(), message);
                 self.warnings.push(warning.with_related(first.span(), "the variable"));
                 self.symbols.insert(name, symbol);
@@ -192,7 +193,8 @@ impl<'t> Model<'t> {
                     return Err(Box::new(suggest(error, &module.name, known)));
                 };
                 if depth >= 64 {
-                    let message = "instances within instances, more than 64 of them: a module has itself inside";
+                    let message =
+                        "instances within instances, more than 64 of them: a module has itself inside";
                     return Err(Box::new(Diagnostic::error("too-deep", span, message)));
                 }
                 if arguments.len() != instance.params.len() {
@@ -202,10 +204,22 @@ impl<'t> Model<'t> {
                     return Err(Box::new(error.with_related(instance.name.span, "declared here")));
                 }
                 let id = ScopeId(self.scopes.len());
-                let params = instance.params.iter().zip(arguments);
-                let params = params.map(|(param, argument)| (param.name.as_str(), (scope, argument)));
-                self.scopes.push(Scope { prefix: format!("{name}."), params: params.collect() });
+                let prefix = format!("{name}.");
+                let mut params = FxHashMap::default();
                 self.add(name, Symbol::Instance(id, span))?;
+                for (param, argument) in instance.params.iter().zip(arguments) {
+                    match argument.kind {
+                        Kind::Name(_) | Kind::Bool(_) | Kind::Int(_) | Kind::Word(..) => {
+                            params.insert(param.name.as_str(), (scope, argument));
+                        }
+                        // What is more than a name is a definition, which is shared by all who read it.
+                        _ => {
+                            let define = Symbol::Define(scope, argument, argument.span);
+                            self.add(format!("{prefix}{}", param.name), define)?;
+                        }
+                    }
+                }
+                self.scopes.push(Scope { prefix, params });
                 return Ok(vec![(id, instance, depth + 1)]);
             }
             TypeKind::Array(lo, hi, of) => {
@@ -217,7 +231,14 @@ impl<'t> Model<'t> {
                 self.add(name.clone(), Symbol::Array(lo, hi, span))?;
                 let mut more = Vec::new();
                 for at in lo..=hi {
-                    more.extend(self.declare(scope, role, format!("{name}[{at}]"), span, of, (depth, modules))?);
+                    more.extend(self.declare(
+                        scope,
+                        role,
+                        format!("{name}[{at}]"),
+                        span,
+                        of,
+                        (depth, modules),
+                    )?);
                 }
                 return Ok(more);
             }
@@ -225,7 +246,8 @@ impl<'t> Model<'t> {
             TypeKind::Range(lo, hi) => {
                 let (lo, hi) = (self.number(scope, lo)?, self.number(scope, hi)?);
                 if lo > hi {
-                    let error = Diagnostic::error("empty-range", ty_span, format!("the range {lo}..{hi} is empty"));
+                    let error =
+                        Diagnostic::error("empty-range", ty_span, format!("the range {lo}..{hi} is empty"));
                     return Err(Box::new(error));
                 }
                 Ty::Int(lo, hi)
@@ -234,9 +256,12 @@ impl<'t> Model<'t> {
             TypeKind::Word(signed, width) => {
                 let bits = self.number(scope, width)?;
                 match u32::try_from(bits) {
-                    Ok(width) if (1..=MAX_WIDTH).contains(&width) => Ty::Word(Word { signed: *signed, width }),
+                    Ok(width) if (1..=MAX_WIDTH).contains(&width) => {
+                        Ty::Word(Word { signed: *signed, width })
+                    }
                     _ => {
-                        let message = format!("words of {bits} bits are not supported; of 1 to {MAX_WIDTH} they are");
+                        let message =
+                            format!("words of {bits} bits are not supported; of 1 to {MAX_WIDTH} they are");
                         return Err(Box::new(Diagnostic::error("unsupported", width.span, message)));
                     }
                 }
@@ -284,9 +309,9 @@ impl<'t> Model<'t> {
     /// depth of definitions that are read.
     pub(crate) fn number(&self, scope: ScopeId, e: &Expr) -> Parse<i64> {
         let limit = |n: i128| i64::try_from(n).ok().filter(|n| n.unsigned_abs() < 1 << 60);
-        self.constant(scope, e, 0).and_then(limit).ok_or_else(|| {
-            Box::new(Diagnostic::error("not-constant", e.span, "expected a constant integer"))
-        })
+        self.constant(scope, e, 0)
+            .and_then(limit)
+            .ok_or_else(|| Box::new(Diagnostic::error("not-constant", e.span, "expected a constant integer")))
     }
 
     fn constant(&self, scope: ScopeId, e: &Expr, depth: u32) -> Option<i128> {

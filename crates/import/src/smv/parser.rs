@@ -7,9 +7,30 @@ use hyperplan_syntax::{Diagnostic, SourceId};
 
 /// Words that begin a section.
 const SECTIONS: &[&str] = &[
-    "MODULE", "VAR", "IVAR", "FROZENVAR", "DEFINE", "CONSTANTS", "ASSIGN", "INIT", "TRANS", "INVAR", "FAIRNESS",
-    "JUSTICE", "COMPASSION", "SPEC", "CTLSPEC", "LTLSPEC", "INVARSPEC", "PSLSPEC", "COMPUTE", "ISA", "PRED",
-    "MIRROR", "PARSYNTH", "FUN",
+    "MODULE",
+    "VAR",
+    "IVAR",
+    "FROZENVAR",
+    "DEFINE",
+    "CONSTANTS",
+    "ASSIGN",
+    "INIT",
+    "TRANS",
+    "INVAR",
+    "FAIRNESS",
+    "JUSTICE",
+    "COMPASSION",
+    "SPEC",
+    "CTLSPEC",
+    "LTLSPEC",
+    "INVARSPEC",
+    "PSLSPEC",
+    "COMPUTE",
+    "ISA",
+    "PRED",
+    "MIRROR",
+    "PARSYNTH",
+    "FUN",
 ];
 
 /// More errors than these are not worth telling.
@@ -35,8 +56,11 @@ pub(crate) fn parse(source: SourceId, text: &str) -> (Vec<Module>, Vec<Diagnosti
     }
     if let Some(first) = parser.open_cases.first() {
         let message = match parser.open_cases.len() {
-            1 => "this `case` has none that always applies; where none does, its last value is taken".to_owned(),
-            n => format!("{n} `case`s have none that always applies; where none does, their last value is taken"),
+            1 => "this `case` has none that always applies; where none does, its last value is taken"
+                .to_owned(),
+            n => format!(
+                "{n} `case`s have none that always applies; where none does, their last value is taken"
+            ),
         };
         let warning = Diagnostic::warning("open-case", *first, message);
         found.push(warning.with_help("end it with `TRUE : ...;`, as NuSMV wants it where it cannot tell"));
@@ -56,11 +80,7 @@ fn at_section(parser: &Parser<'_>) -> bool {
     token.tok == Tok::Eof || token.tok == Tok::Word && SECTIONS.contains(&token.text)
 }
 
-fn section(
-    parser: &mut Parser<'_>,
-    modules: &mut Vec<Module>,
-    warnings: &mut Vec<Diagnostic>,
-) -> Parse<()> {
+fn section(parser: &mut Parser<'_>, modules: &mut Vec<Module>, warnings: &mut Vec<Diagnostic>) -> Parse<()> {
     if !at_section(parser) {
         return parser.fail("a section such as `VAR` or `ASSIGN`");
     }
@@ -99,7 +119,8 @@ fn section(
             parser.refuse(word.span, message, help)
         }
         "SPEC" | "CTLSPEC" | "LTLSPEC" | "INVARSPEC" | "PSLSPEC" | "COMPUTE" => {
-            let message = format!("this `{}` is not read: what is asked stands in the formula file", word.text);
+            let message =
+                format!("this `{}` is not read: what is asked stands in the formula file", word.text);
             warnings.push(Diagnostic::warning("ignored", word.span, message));
             skip(parser);
             Ok(())
@@ -167,7 +188,8 @@ fn declared_type(parser: &mut Parser<'_>) -> Parse<Type> {
             return parser.refuse(start.span, "processes are not supported", help);
         }
         "integer" | "real" | "clock" => {
-            let message = format!("variables of type `{}` have no bounds, which is not supported", start.text);
+            let message =
+                format!("variables of type `{}` have no bounds, which is not supported", start.text);
             return parser.refuse(start.span, message, "give the variable a range, such as `0..9`");
         }
         _ if start.tok == Tok::Word && matches!(parser.token_at(1).text, ";" | "(") => {

@@ -1,0 +1,157 @@
+//! The files of `specs/import`: what they become, and what is said of bad ones. `UPDATE=1` writes it anew.
+
+use hyperplan_import::{Imported, Input, Options, import};
+use hyperplan_problem::{NoFiles, Overrides, lower, read};
+use hyperplan_syntax::{Diagnostic, SourceMap, print, render};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn models(folder: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs/import").join(folder);
+    let mut found: Vec<PathBuf> =
+        fs::read_dir(folder).expect("it is there").map(|e| e.expect("a file").path()).collect();
+    found.retain(|path| path.extension().is_some_and(|ending| ending == "smv"));
+    found.sort();
+    assert!(!found.is_empty());
+    found
+}
+
+/// A model, with the formula of the same name, if there is one.
+fn imported(model: &Path, sources: &mut SourceMap) -> Imported {
+    let mut inputs = Vec::new();
+    for path in [model.to_owned(), model.with_extension("hq")] {
+        let Ok(text) = fs::read_to_string(&path) else { continue };
+        let name = path.file_name().expect("it has a name").to_string_lossy().into_owned();
+        inputs.push(Input { name, text });
+    }
+    import(&inputs, &Options { bound: Some(6), semantics: None }, sources)
+}
+
+fn same(expected: &Path, found: &str) {
+    if std::env::var_os("UPDATE").is_some() {
+        fs::write(expected, found).expect("it can be written");
+    }
+    let known = fs::read_to_string(expected).unwrap_or_default().replace("\r\n", "\n");
+    assert_eq!(known, found, "{}: UPDATE=1 writes it anew", expected.display());
+}
+
+#[test]
+fn good_files_become_readable_problems() {
+    for model in models("pass") {
+        let mut sources = SourceMap::new();
+        let imported = imported(&model, &mut sources);
+        let errors: Vec<&Diagnostic> = imported.diagnostics.iter().filter(|d| d.is_error()).collect();
+        assert!(errors.is_empty(), "{}: {errors:#?}", model.display());
+        let lowered = lower(&imported.file, &mut sources, &NoFiles, &Overrides::default());
+        assert!(!lowered.has_errors(), "{}: {:#?}", model.display(), lowered.diagnostics);
+        let text = format!("{}\n{}", imported.about, print(&imported.file, ""));
+        same(&model.with_extension("hp"), &text);
+        let again = read(&mut SourceMap::new(), "again.hp", &text, &NoFiles, &Overrides::default());
+        assert!(!again.has_errors(), "{}: {:#?}", model.display(), again.diagnostics);
+    }
+}
+
+#[test]
+fn bad_files_are_told_of_where_they_are_bad() {
+    for model in models("fail") {
+        let mut sources = SourceMap::new();
+        let imported = imported(&model, &mut sources);
+        assert!(imported.diagnostics.iter().any(Diagnostic::is_error), "{}", model.display());
+        let told = render(&sources, &imported.diagnostics, false, 100);
+        same(&model.with_extension("stderr"), &told);
+    }
+}
+
+/// One diagnostic, as code and marked text.
+fn only_error(model: &str, formula: &str, options: &Options) -> (&'static str, String) {
+    let mut sources = SourceMap::new();
+    let input = |name: &str, text: &str| Input { name: name.to_owned(), text: text.to_owned() };
+    let imported = import(&[input("m.smv", model), input("f.hq", formula)], options, &mut sources);
+    let [error] = &imported.diagnostics[..] else { panic!("{:#?}", imported.diagnostics) };
+    (error.code, error.span.map_or(String::new(), |span| sources.snippet(span).to_owned()))
+}
+
+#[test]
+fn what_has_no_end_needs_a_bound() {
+    let model = "MODULE main VAR x : boolean;";
+    let without = Options::default();
+    let said = only_error(model, "exists A. X F x[A]", &without);
+    assert_eq!(said, ("unbounded-operator", "F x[A]".to_owned()));
+    let mut sources = SourceMap::new();
+    let input = |name: &str, text: &str| Input { name: name.to_owned(), text: text.to_owned() };
+    let files = [input("m.smv", model), input("f.hq", "exists A. X F[0,3] x[A]")];
+    assert!(import(&files, &without, &mut sources).diagnostics.is_empty());
+}
+
+#[test]
+fn deep_and_long_input_is_refused_or_read() {
+    let model = |body: &str| format!("MODULE main VAR x : 0..9; y : boolean; DEFINE d := {body};");
+    let formula = "exists A. x[A] = 0";
+    let nested = |open: &str, close: &str, inside: &str| {
+        model(&format!("{}{inside}{}", open.repeat(100_000), close.repeat(100_000)))
+    };
+    for text in [
+        nested("(", ")", "y"),
+        nested("!", "", "y"),
+        nested("- ", "", "x"),
+        nested("case y : ", "; TRUE : 0; esac", "0"),
+        nested("next(", ")", "y"),
+        model(&format!("x{}", " * x".repeat(100_000))),
+        model(&format!("y{}", " -> y".repeat(100_000))),
+        model(&"(y & ".repeat(100_000)),
+    ] {
+        assert_eq!(only_error(&text, formula, &Options::default()).0, "too-deep", "{}", &text[..60]);
+    }
+    // Chains are flat, be they lists of one `case`, or each in the last case of the one before.
+    for text in [
+        model(&format!("y{}", " & y".repeat(100_000))),
+        model(&format!("x{}", " + 1 - x + x".repeat(10_000))),
+        model(&format!("case {}TRUE : 0; esac", "x = 1 & y : 1; ".repeat(20_000))),
+        model(
+            &format!("{}0;{}", "case x = 1 : 1; TRUE : ".repeat(5_000), " esac;".repeat(5_000))
+                .replace("; esac;;", "; esac;"),
+        ),
+        model(&format!("{}0", "y ? 1 : ".repeat(20_000))),
+    ] {
+        let text = text.replace("esac;;", "esac;");
+        let mut sources = SourceMap::new();
+        let imported = import(
+            &[Input { name: "m.smv".to_owned(), text: text.clone() }],
+            &Options::default(),
+            &mut sources,
+        );
+        assert!(imported.diagnostics.is_empty(), "{:#?}", imported.diagnostics);
+        let lowered = lower(&imported.file, &mut sources, &NoFiles, &Overrides::default());
+        assert!(!lowered.has_errors(), "{:#?}", lowered.diagnostics);
+    }
+}
+
+/// Definitions that read others twice are labels, and parameters are read where they were given: nothing doubles.
+#[test]
+fn definitions_are_shared() {
+    let mut text = "MODULE main VAR x : 0..1; DEFINE d0 := x;".to_owned();
+    for n in 1..5_000 {
+        text += &format!(" d{n} := case d{0} = 0 : d{0}; TRUE : 1; esac;", n - 1);
+    }
+    let mut sources = SourceMap::new();
+    let imported = import(&[Input { name: "m.smv".to_owned(), text }], &Options::default(), &mut sources);
+    assert!(imported.diagnostics.is_empty(), "{:#?}", imported.diagnostics);
+    let lowered = lower(&imported.file, &mut sources, &NoFiles, &Overrides::default());
+    assert!(!lowered.has_errors(), "{:#?}", lowered.diagnostics);
+    // The same where each instance gives the next one its parameter twice.
+    let mut text = String::new();
+    for n in 0..60 {
+        text += &format!("MODULE m{n}(p) VAR i : m{}(p & p);\n", n + 1);
+    }
+    text += "MODULE m60(p) DEFINE all := p; MODULE main VAR y : boolean; i : m0(y);";
+    let mut sources = SourceMap::new();
+    let imported = import(&[Input { name: "m.smv".to_owned(), text }], &Options::default(), &mut sources);
+    assert!(imported.diagnostics.is_empty(), "{:#?}", imported.diagnostics);
+    // Sets have no labels: where they would double too often, they are refused.
+    let mut text = "MODULE main VAR x : 0..9; DEFINE s0 := {0, 1};".to_owned();
+    for n in 1..60 {
+        text += &format!(" s{n} := s{0} union s{0};", n - 1);
+    }
+    text += " ASSIGN next(x) := s59;";
+    assert_eq!(only_error(&text, "exists A. x[A] = 0", &Options::default()).0, "too-large");
+}
