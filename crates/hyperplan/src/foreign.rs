@@ -3,7 +3,7 @@
 use crate::args::{Cli, Command, Others, Plan};
 use crate::failure::{Failure, Result};
 use crate::files::{self, read_source};
-use hyperplan_import::{Input, Kind, Options, import};
+use hyperplan_import::{Imported, Input, Kind, Options, import};
 use hyperplan_problem::{Lowered, NoFiles, Overrides, lower};
 use hyperplan_syntax::{Diagnostic, SourceMap, print};
 use std::path::{Path, PathBuf};
@@ -114,21 +114,32 @@ fn found(file: &Path, others: &mut Others, plan: Option<&mut Plan>) -> Result<Op
 impl Foreign {
     /// What the files mean, and what is wrong with them.
     pub(crate) fn lower(&self, overrides: &Overrides) -> (Lowered, SourceMap) {
-        let mut sources = SourceMap::new();
-        let mut imported = import(&self.inputs, &self.options, &mut sources);
-        if imported.diagnostics.iter().any(Diagnostic::is_error) {
-            return (Lowered { diagnostics: imported.diagnostics, ..Lowered::default() }, sources);
-        }
-        let mut lowered = lower(&imported.file, &mut sources, &NoFiles, overrides);
-        imported.diagnostics.append(&mut lowered.diagnostics);
-        // What stands in a model is not there for one formula alone.
-        lowered.unused = imported.doubts;
-        (Lowered { diagnostics: imported.diagnostics, ..lowered }, sources)
+        let (lowered, sources, _) = self.read(overrides);
+        (lowered, sources)
     }
 
-    /// The files as a problem file: with comments that say where things come from.
-    pub(crate) fn text(&self) -> String {
-        let imported = import(&self.inputs, &self.options, &mut SourceMap::new());
-        format!("{}\n{}", imported.about, print(&imported.file, ""))
+    /// The same, with what the files became.
+    pub(crate) fn read(&self, overrides: &Overrides) -> (Lowered, SourceMap, Imported) {
+        let mut sources = SourceMap::new();
+        let mut imported = import(&self.inputs, &self.options, &mut sources);
+        for diagnostic in &mut imported.diagnostics {
+            if diagnostic.code == "unbounded-operator" {
+                diagnostic.help = Some("say it with `--bound K`".to_owned());
+            }
+        }
+        let mut diagnostics = std::mem::take(&mut imported.diagnostics);
+        if diagnostics.iter().any(Diagnostic::is_error) {
+            return (Lowered { diagnostics, ..Lowered::default() }, sources, imported);
+        }
+        let mut lowered = lower(&imported.file, &mut sources, &NoFiles, overrides);
+        diagnostics.append(&mut lowered.diagnostics);
+        // What stands in a model is not there for one formula alone: nothing of it is called unused.
+        let unused = std::mem::take(&mut imported.doubts);
+        (Lowered { diagnostics, unused, ..lowered }, sources, imported)
     }
+}
+
+/// What files became, as a problem file that says where things come from.
+pub(crate) fn text(imported: &Imported) -> String {
+    format!("{}\n{}", imported.about, print(&imported.file, ""))
 }

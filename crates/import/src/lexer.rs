@@ -1,5 +1,6 @@
 //! From text to tokens, of SMV and of the formula languages alike.
 
+use crate::parser::Parse;
 use hyperplan_syntax::{Diagnostic, SourceId, Span};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +31,7 @@ const SIGNS: &[&str] = &[
 ];
 
 /// The tokens of a text, the last of which is the end; or what cannot be read.
-pub(crate) fn lex(source: SourceId, text: &str) -> Result<Vec<Token<'_>>, Diagnostic> {
+pub(crate) fn lex(source: SourceId, text: &str) -> Parse<Vec<Token<'_>>> {
     let mut tokens = Vec::with_capacity(text.len() / 4);
     let bytes = text.as_bytes();
     let mut at = 0;
@@ -48,7 +49,7 @@ pub(crate) fn lex(source: SourceId, text: &str) -> Result<Vec<Token<'_>>, Diagno
                 Some(end) if bytes[at + 1 + end] == b'"' => (Tok::Text, end + 2),
                 _ => {
                     let message = "this string has no closing `\"`";
-                    return Err(Diagnostic::error("unclosed-string", span(1), message));
+                    return Err(Box::new(Diagnostic::error("unclosed-string", span(1), message)));
                 }
             },
             c if c.is_ascii_alphabetic() || c == b'_' => (Tok::Word, word(rest)),
@@ -57,7 +58,11 @@ pub(crate) fn lex(source: SourceId, text: &str) -> Result<Vec<Token<'_>>, Diagno
                 None => {
                     let found = rest.chars().next().unwrap_or_default();
                     let message = format!("unexpected character `{}`", found.escape_debug());
-                    return Err(Diagnostic::error("bad-character", span(found.len_utf8()), message));
+                    return Err(Box::new(Diagnostic::error(
+                        "bad-character",
+                        span(found.len_utf8()),
+                        message,
+                    )));
                 }
             },
         };
@@ -67,7 +72,7 @@ pub(crate) fn lex(source: SourceId, text: &str) -> Result<Vec<Token<'_>>, Diagno
 }
 
 /// Behind blanks and comments, which are `--` to the end of the line, `//` as well, and `/-- ... --/`.
-fn skip(source: SourceId, text: &str, mut at: usize) -> Result<usize, Diagnostic> {
+fn skip(source: SourceId, text: &str, mut at: usize) -> Parse<usize> {
     loop {
         let rest = &text[at..];
         let blanks = rest.len() - rest.trim_start().len();
@@ -76,7 +81,11 @@ fn skip(source: SourceId, text: &str, mut at: usize) -> Result<usize, Diagnostic
         } else if rest.starts_with("/--") {
             let Some(end) = rest.find("--/") else {
                 let span = Span::new(source, at..at + 3);
-                return Err(Diagnostic::error("unclosed-comment", span, "this comment has no closing `--/`"));
+                return Err(Box::new(Diagnostic::error(
+                    "unclosed-comment",
+                    span,
+                    "this comment has no closing `--/`",
+                )));
             };
             at += end + 3;
         } else if rest.starts_with("--") || rest.starts_with("//") || rest.starts_with('\u{feff}') {

@@ -199,7 +199,7 @@ fn bounded(body: &tree::Expr) -> parser::Parse<()> {
         };
         if endless {
             let message = "this operator has no end, and paths of how many steps are meant is not said";
-            return lower::wrong_with("unbounded-operator", e.span, message, "say it with `--bound K`");
+            return lower::wrong("unbounded-operator", e.span, message);
         }
         stack.extend(e.kind.children());
     }

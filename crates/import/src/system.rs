@@ -240,7 +240,9 @@ impl<'t> Builder<'_, 't, '_> {
                 self.found.push(error.with_related(earlier, "the first one"));
             }
         }
-        for (full, (_, _, span)) in &every {
+        let mut twice: Vec<_> = every.iter().collect();
+        twice.sort_unstable_by_key(|(_, (_, _, span))| span.start);
+        for (full, (_, _, span)) in twice {
             if let Some((_, _, other)) = first.get(full).or(next.get(full)) {
                 let message = format!("`{full}` is assigned always, and also by `init` or `next`");
                 self.found
@@ -424,7 +426,8 @@ impl<'t> Builder<'_, 't, '_> {
                 let values = values.into_iter().map(|value| self.of_type(value, ty, span));
                 Set::List(values.collect::<Parse<_>>()?, span)
             }
-            Choice::Range((lo, ..), (hi, ..)) if matches!(ty, Ty::Int(..) | Ty::Numbers(_)) => {
+            Choice::Range(ends) if matches!(ty, Ty::Int(..) | Ty::Numbers(_)) => {
+                let [(lo, ..), (hi, ..)] = *ends;
                 Set::Range(Box::new(lo), Box::new(hi))
             }
             Choice::Range(..) => return wrong("type-mismatch", span, "a range is of integers"),

@@ -4,11 +4,13 @@ use crate::args;
 use crate::config;
 use crate::failure::{Exit, Result};
 use crate::files::read_source;
+use crate::foreign::text;
 use crate::load::Loaded;
 use crate::output::Output;
 use crate::report;
 use hyperplan_outlet::one_line;
 use hyperplan_plan::{Budget, Lints};
+use hyperplan_problem::Overrides;
 use hyperplan_syntax::{SourceId, parse, print, to_json};
 
 pub(crate) fn run(args: &args::Check, verbose: bool, out: &mut Output) -> Result {
@@ -82,7 +84,7 @@ fn count(n: usize, what: &str) -> String {
 /// Prints the file as its syntax tree says, with its comments.
 fn formatted(problem: &args::Problem, text: &str, out: &mut Output) -> Result {
     match &problem.foreign {
-        Some(foreign) => out.verbatim(&foreign.text())?,
+        Some(foreign) => out.verbatim(&text(&foreign.read(&Overrides::default()).2))?,
         None => out.verbatim(&print(&parse(SourceId(0), text).0, text))?,
     }
     out.flush()?;

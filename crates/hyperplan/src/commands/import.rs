@@ -3,10 +3,10 @@
 use crate::args;
 use crate::failure::{Exit, Failure, Result};
 use crate::files::write_bytes;
-use crate::load::Loaded;
+use crate::foreign::text;
 use crate::output::Output;
 use crate::report;
-use std::time::Instant;
+use hyperplan_problem::Overrides;
 
 pub(crate) fn run(args: &args::Import, out: &mut Output) -> Result {
     let Some(foreign) = &args.problem.foreign else {
@@ -15,13 +15,12 @@ pub(crate) fn run(args: &args::Import, out: &mut Output) -> Result {
             "{file} is neither a model (.smv) nor a formula (.hq) of another tool"
         )));
     };
-    let (lowered, sources) = Loaded::lower(&args.problem, "");
+    let (lowered, sources, imported) = foreign.read(&Overrides { values: args.problem.set.clone() });
+    report::diagnostics(&sources, &lowered.diagnostics, out);
     if lowered.has_errors() {
-        report::diagnostics(&sources, &lowered.diagnostics, out);
         return Ok(Exit::Input);
     }
-    Loaded::of(&args.problem, (lowered, sources), Instant::now(), out)?;
-    let text = foreign.text();
+    let text = text(&imported);
     match &args.output {
         Some(path) => write_bytes(path, text.as_bytes())?,
         None => {

@@ -5,6 +5,7 @@
 //! the values of one of them. Names of definitions stay names wherever a label can have their value.
 
 mod arith;
+mod calls;
 mod sets;
 mod symbols;
 mod words;

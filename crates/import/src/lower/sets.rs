@@ -18,7 +18,7 @@ pub(crate) enum Choice {
     /// These.
     Values(Vec<Val>),
     /// The integers between two, with the bounds of each.
-    Range((ast::Expr, i128, i128), (ast::Expr, i128, i128)),
+    Range(Box<[(ast::Expr, i128, i128); 2]>),
     /// As the first condition that holds says, or the last.
     If(Vec<(ast::Expr, Choice)>, Box<Choice>),
 }
@@ -53,7 +53,7 @@ impl<'t> Lower<'t> {
                     let message = format!("the range {}..{} is empty", lo.1, hi.2);
                     return wrong("empty-range", expr.span, message);
                 }
-                Ok(Choice::Range(lo, hi))
+                Ok(Choice::Range(Box::new([lo, hi])))
             }
             Kind::Case(branches, last) if self.has_set(place, branches, last) => {
                 let mut kept = Vec::with_capacity(branches.len());
@@ -69,10 +69,9 @@ impl<'t> Lower<'t> {
             }
             Kind::Name(name) => match self.models[place.model].model.meaning(place.scope, name) {
                 Some(Meaning::Argument(scope, argument)) => self.choice(Place { scope, ..place }, argument),
-                Some(Meaning::Symbol(full, &Symbol::Define(scope, ref body, _)))
+                Some(Meaning::Symbol(full, &Symbol::Define(scope, body, _)))
                     if !self.models[place.model].is_label(full) && self.depth < 100 =>
                 {
-                    let (scope, body) = (scope, *body);
                     self.depth += 1;
                     let found = self.choice(Place { scope, ..place }, body);
                     self.depth -= 1;
@@ -105,7 +104,7 @@ impl<'t> Lower<'t> {
                     Some(Meaning::Argument(scope, argument)) => {
                         self.is_set(Place { scope, ..place }, argument, depth + 1)
                     }
-                    Some(Meaning::Symbol(full, &Symbol::Define(scope, ref body, _)))
+                    Some(Meaning::Symbol(full, &Symbol::Define(scope, body, _)))
                         if !self.models[place.model].is_label(full) =>
                     {
                         self.is_set(Place { scope, ..place }, body, depth + 1)
@@ -132,8 +131,8 @@ impl<'t> Lower<'t> {
                 }
                 Ok(Choice::If(kept, Box::new(self.union(*last, other, span)?)))
             }
-            (Choice::Range((_, lo, end), (_, start, hi)), other)
-            | (other, Choice::Range((_, lo, end), (_, start, hi))) => {
+            (Choice::Range(ends), other) | (other, Choice::Range(ends)) => {
+                let [(_, lo, end), (_, start, hi)] = *ends;
                 if lo != end || start != hi || hi - lo >= MAX_LISTED {
                     let message =
                         "a union with a range whose ends vary, or that is very long, is not supported";
@@ -169,8 +168,9 @@ impl<'t> Lower<'t> {
                     _ => either(ways, span),
                 })
             }
-            Choice::Range((lo, ..), (hi, ..)) => match value {
+            Choice::Range(ends) => match value {
                 Val::Int(a, ..) => {
+                    let [(lo, ..), (hi, ..)] = *ends;
                     Ok(e(ExprKind::In(Box::new(a), Set::Range(Box::new(lo), Box::new(hi))), span))
                 }
                 other => {

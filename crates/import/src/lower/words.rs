@@ -5,7 +5,7 @@ use super::{Lower, Place, Val, choice, compare, e, int, wrong, wrong_with};
 use crate::parser::{MAX_WIDTH, Parse};
 use crate::tree::{Access, Expr, Infix, Word};
 use hyperplan_syntax::Span;
-use hyperplan_syntax::ast::{self, ArithOp, CompareOp, ExprKind, Ident};
+use hyperplan_syntax::ast::{self, ArithOp, CompareOp, ExprKind};
 
 /// Wider words are not combined bit by bit.
 const MAX_BITWISE: u32 = 16;
@@ -26,12 +26,12 @@ impl<'t> Lower<'t> {
     }
 
     /// The bits of a word as a number without sign.
-    fn unsigned(&mut self, a: ast::Expr, word: Word, span: Span) -> ast::Expr {
+    pub(super) fn unsigned(&mut self, a: ast::Expr, word: Word, span: Span) -> ast::Expr {
         if word.signed { arith(ArithOp::Mod, a, power(word.width), span) } else { a }
     }
 
     /// Bits as a word of that type.
-    fn of_bits(&mut self, bits: ast::Expr, word: Word, span: Span) -> Val {
+    pub(super) fn of_bits(&mut self, bits: ast::Expr, word: Word, span: Span) -> Val {
         let most = power(word.width) - 1;
         self.wrapped(bits, 0, most, word, span)
     }
@@ -161,116 +161,5 @@ impl<'t> Lower<'t> {
         }
         let bits = if terms.len() == 1 { terms.remove(0).1 } else { e(ExprKind::Sum(terms), span) };
         Ok(self.of_bits(bits, word, span))
-    }
-
-    /// `NAME(E, ...)`
-    pub(super) fn call(
-        &mut self,
-        place: Place<'_>,
-        name: &Ident,
-        arguments: &[Expr],
-        span: Span,
-    ) -> Parse<Val> {
-        let constant = |lower: &Self, e: &Expr| lower.models[place.model].model.number(place.scope, e);
-        match (name.name.as_str(), arguments) {
-            ("count", _) => {
-                let mut terms = Vec::with_capacity(arguments.len());
-                for argument in arguments {
-                    let truth = self.truth(place, argument)?;
-                    terms.push((false, choice(vec![(truth, int(1, span))], int(0, span), span)));
-                }
-                let most = terms.len() as i128;
-                let total = if terms.len() == 1 { terms.remove(0).1 } else { e(ExprKind::Sum(terms), span) };
-                Ok(Val::Int(total, 0, most))
-            }
-            ("abs", [a]) => {
-                let (a, lo, hi) = self.integer(place, a)?;
-                let (tested, other) = (self.copy(&a)?, self.copy(&a)?);
-                let negative = compare(CompareOp::Lt, tested, int(0, span), span);
-                let minus = e(ExprKind::Neg(Box::new(other)), span);
-                let least = if lo > 0 {
-                    lo
-                } else if hi < 0 {
-                    -hi
-                } else {
-                    0
-                };
-                Ok(Val::Int(choice(vec![(negative, minus)], a, span), least, lo.abs().max(hi.abs())))
-            }
-            ("min" | "max", [a, b]) => {
-                let (a, b) = (self.integer(place, a)?, self.integer(place, b)?);
-                let op = if name.name == "min" { CompareOp::Le } else { CompareOp::Ge };
-                let (left, right) = (self.copy(&a.0)?, self.copy(&b.0)?);
-                let first = compare(op, left, right, span);
-                let (lo, hi) = if name.name == "min" {
-                    (a.1.min(b.1), a.2.min(b.2))
-                } else {
-                    (a.1.max(b.1), a.2.max(b.2))
-                };
-                Ok(Val::Int(choice(vec![(first, a.0)], b.0, span), lo, hi))
-            }
-            ("bool", [a]) => match self.value(place, a)? {
-                Val::Bool(a) => Ok(Val::Bool(a)),
-                Val::Int(a, ..) | Val::Word(a, _) => {
-                    Ok(Val::Bool(compare(CompareOp::Ne, a, int(0, span), span)))
-                }
-                other => wrong("type-mismatch", a.span, format!("{} is no number", other.describe())),
-            },
-            ("toint", [a]) => match self.value(place, a)? {
-                Val::Bool(a) => Ok(Val::Int(choice(vec![(a, int(1, span))], int(0, span), span), 0, 1)),
-                Val::Word(a, word) => {
-                    let (lo, hi) = word.bounds();
-                    Ok(Val::Int(a, i128::from(lo), i128::from(hi)))
-                }
-                value @ Val::Int(..) => Ok(value),
-                other => wrong("type-mismatch", a.span, format!("{} is no number", other.describe())),
-            },
-            ("word1", [a]) => {
-                let a = self.truth(place, a)?;
-                let bit = choice(vec![(a, int(1, span))], int(0, span), span);
-                Ok(Val::Word(bit, Word { signed: false, width: 1 }))
-            }
-            ("signed" | "unsigned", [a]) => match self.value(place, a)? {
-                Val::Word(a, word) => {
-                    let bits = self.unsigned(a, word, span);
-                    Ok(self.of_bits(bits, Word { signed: name.name == "signed", ..word }, span))
-                }
-                other => wrong("type-mismatch", a.span, format!("{} is no word", other.describe())),
-            },
-            ("uwconst" | "swconst", [a, width]) => {
-                let (value, width) = (constant(self, a)?, constant(self, width)?);
-                let width = u32::try_from(width).ok().filter(|width| (1..=MAX_WIDTH).contains(width));
-                let Some(width) = width else {
-                    return wrong("unsupported", span, format!("words have 1 to {MAX_WIDTH} bits"));
-                };
-                let word = Word { signed: name.name == "swconst", width };
-                let value = i128::from(value);
-                Ok(self.wrapped(int(value, span), value, value, word, span))
-            }
-            ("extend" | "resize", [a, by]) => {
-                let by = constant(self, by)?;
-                let Val::Word(a, word) = self.value(place, a)? else {
-                    return wrong("type-mismatch", a.span, "expected a word");
-                };
-                let width = if name.name == "extend" { i64::from(word.width) + by } else { by };
-                let Some(width) = u32::try_from(width).ok().filter(|width| (1..=MAX_WIDTH).contains(width))
-                else {
-                    return wrong("unsupported", span, format!("words have 1 to {MAX_WIDTH} bits"));
-                };
-                let (lo, hi) = word.bounds();
-                let word = Word { width, ..word };
-                Ok(self.wrapped(a, i128::from(lo), i128::from(hi), word, span))
-            }
-            (
-                known @ ("abs" | "min" | "max" | "bool" | "toint" | "word1" | "signed" | "unsigned"
-                | "uwconst" | "swconst" | "extend" | "resize"),
-                _,
-            ) => wrong(
-                "argument-count",
-                span,
-                format!("`{known}` does not take {} arguments", arguments.len()),
-            ),
-            (other, _) => wrong("unsupported", name.span, format!("the function `{other}` is not supported")),
-        }
     }
 }

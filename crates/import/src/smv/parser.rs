@@ -40,7 +40,7 @@ const MAX_ERRORS: usize = 20;
 pub(crate) fn parse(source: SourceId, text: &str) -> (Vec<Module>, Vec<Diagnostic>) {
     let tokens = match lex(source, text) {
         Ok(tokens) => tokens,
-        Err(error) => return (Vec::new(), vec![error]),
+        Err(error) => return (Vec::new(), vec![*error]),
     };
     let mut parser = Parser::new(tokens);
     let (mut modules, mut found): (Vec<Module>, Vec<Diagnostic>) = (Vec::new(), Vec::new());
