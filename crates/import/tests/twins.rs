@@ -52,10 +52,13 @@ struct Defines {
     number: Number,
 }
 
+/// Conditions with the values that they allow.
+type Branches = Vec<(Truth, Vec<Value>)>;
+
 struct Model {
     defines: Defines,
     /// For each variable: conditions with the values that they allow; none: any value.
-    next: Vec<Option<Vec<(Truth, Vec<Value>)>>>,
+    next: Vec<Option<Branches>>,
     init: Vec<Truth>,
     invar: Vec<Truth>,
     trans: Vec<Truth>,
@@ -330,7 +333,7 @@ impl Model {
 
     fn is_step(&self, from: &State, to: &State) -> bool {
         let at = At(from, to, &self.defines);
-        let allowed = |(var, next): (usize, &Option<Vec<(Truth, Vec<Value>)>>)| {
+        let allowed = |(var, next): (usize, &Option<Branches>)| {
             next.as_ref().is_none_or(|branches| {
                 let branch = branches.iter().find(|(condition, _)| condition.holds(&at));
                 branch.is_some_and(|(_, values)| values.iter().any(|value| value.of(&at) == to[var]))

@@ -4,7 +4,7 @@ use crate::args;
 use crate::config;
 use crate::failure::{Exit, Result};
 use crate::files::read_source;
-use crate::foreign::text;
+use crate::foreign;
 use crate::load::Loaded;
 use crate::output::Output;
 use crate::report;
@@ -84,7 +84,7 @@ fn count(n: usize, what: &str) -> String {
 /// Prints the file as its syntax tree says, with its comments.
 fn formatted(problem: &args::Problem, text: &str, out: &mut Output) -> Result {
     match &problem.foreign {
-        Some(foreign) => out.verbatim(&text(&foreign.read(&Overrides::default()).2))?,
+        Some(given) => out.verbatim(&foreign::text(&given.read(&Overrides::default()).2))?,
         None => out.verbatim(&print(&parse(SourceId(0), text).0, text))?,
     }
     out.flush()?;
