@@ -2,6 +2,7 @@
 
 use crate::parser::{MAX_WIDTH, Parse};
 use crate::tree::{Expr, Infix, Item, Kind, Module, Moment, Role, Type, TypeKind, Word};
+use hyperplan_syntax::ast::Ident;
 use hyperplan_syntax::{Diagnostic, Span, similar};
 use indexmap::IndexMap;
 use rustc_hash::FxHashMap;
@@ -185,42 +186,7 @@ impl<'t> Model<'t> {
         let ty_span = ty.span;
         let kind = match &ty.kind {
             TypeKind::Instance(module, arguments) => {
-                let Some(instance) = modules.get(module.name.as_str()) else {
-                    let message = format!("no module `{}`", module.name);
-                    let mut known: Vec<&str> = modules.keys().copied().collect();
-                    known.sort_unstable();
-                    let error = Diagnostic::error("unknown-name", module.span, message);
-                    return Err(Box::new(suggest(error, &module.name, known)));
-                };
-                if depth >= 64 {
-                    let message =
-                        "instances within instances, more than 64 of them: a module has itself inside";
-                    return Err(Box::new(Diagnostic::error("too-deep", span, message)));
-                }
-                if arguments.len() != instance.params.len() {
-                    let (takes, given) = (instance.params.len(), arguments.len());
-                    let message = format!("`{}` takes {takes} arguments, not {given}", module.name);
-                    let error = Diagnostic::error("argument-count", ty_span, message);
-                    return Err(Box::new(error.with_related(instance.name.span, "declared here")));
-                }
-                let id = ScopeId(self.scopes.len());
-                let prefix = format!("{name}.");
-                let mut params = FxHashMap::default();
-                self.add(name, Symbol::Instance(id, span))?;
-                for (param, argument) in instance.params.iter().zip(arguments) {
-                    match argument.kind {
-                        Kind::Name(_) | Kind::Bool(_) | Kind::Int(_) | Kind::Word(..) => {
-                            params.insert(param.name.as_str(), (scope, argument));
-                        }
-                        // What is more than a name is a definition, which is shared by all who read it.
-                        _ => {
-                            let define = Symbol::Define(scope, argument, argument.span);
-                            self.add(format!("{prefix}{}", param.name), define)?;
-                        }
-                    }
-                }
-                self.scopes.push(Scope { prefix, params });
-                return Ok(vec![(id, instance, depth + 1)]);
+                return self.instance(scope, name, (span, ty_span), module, arguments, (depth, modules));
             }
             TypeKind::Array(lo, hi, of) => {
                 let (lo, hi) = (self.number(scope, lo)?, self.number(scope, hi)?);
@@ -269,6 +235,53 @@ impl<'t> Model<'t> {
         };
         self.add(name, Symbol::Var(Var { role, ty: kind, span, ty_span }))?;
         Ok(Vec::new())
+    }
+
+    /// Declares an instance of a module, whose items are to be added.
+    fn instance(
+        &mut self,
+        scope: ScopeId,
+        name: String,
+        (span, ty_span): (Span, Span),
+        module: &'t Ident,
+        arguments: &'t [Expr],
+        (depth, modules): (u32, &FxHashMap<&str, &'t Module>),
+    ) -> Parse<Vec<(ScopeId, &'t Module, u32)>> {
+        let Some(instance) = modules.get(module.name.as_str()) else {
+            let message = format!("no module `{}`", module.name);
+            let mut known: Vec<&str> = modules.keys().copied().collect();
+            known.sort_unstable();
+            let error = Diagnostic::error("unknown-name", module.span, message);
+            return Err(Box::new(suggest(error, &module.name, known)));
+        };
+        if depth >= 64 {
+            let message = "instances within instances, more than 64 of them: a module has itself inside";
+            return Err(Box::new(Diagnostic::error("too-deep", span, message)));
+        }
+        if arguments.len() != instance.params.len() {
+            let (takes, given) = (instance.params.len(), arguments.len());
+            let message = format!("`{}` takes {takes} arguments, not {given}", module.name);
+            let error = Diagnostic::error("argument-count", ty_span, message);
+            return Err(Box::new(error.with_related(instance.name.span, "declared here")));
+        }
+        let id = ScopeId(self.scopes.len());
+        let prefix = format!("{name}.");
+        let mut params = FxHashMap::default();
+        self.add(name, Symbol::Instance(id, span))?;
+        for (param, argument) in instance.params.iter().zip(arguments) {
+            match argument.kind {
+                Kind::Name(_) | Kind::Bool(_) | Kind::Int(_) | Kind::Word(..) => {
+                    params.insert(param.name.as_str(), (scope, argument));
+                }
+                // What is more than a name is a definition, which is shared by all who read it.
+                _ => {
+                    let define = Symbol::Define(scope, argument, argument.span);
+                    self.add(format!("{prefix}{}", param.name), define)?;
+                }
+            }
+        }
+        self.scopes.push(Scope { prefix, params });
+        Ok(vec![(id, instance, depth + 1)])
     }
 
     /// `{a, b, 3}`: numbers alone, or symbols.

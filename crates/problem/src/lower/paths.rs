@@ -114,11 +114,12 @@ impl<'a> PathContext<'a> {
         self.systems.iter().any(|system| system.label(name).is_some() || system.var(name).is_some())
     }
 
-    /// `goal_p`, as other tools write `goal[p]`: the label or variable, and the path.
-    fn with_underscore<'n>(&self, name: &'n str) -> Option<(&'n str, &'n str)> {
-        let (read, path) = name.rsplit_once('_')?;
-        let known = self.frame.paths.iter().any(|(known, _)| *known == path);
-        (known && self.is_read_of_paths(read)).then_some((read, path))
+    /// `goal_p`, `goal.p` or `p.goal`, as other tools write `goal[p]`: the label or variable, and the path.
+    fn written_otherwise<'n>(&self, name: &'n str) -> Option<(&'n str, &'n str)> {
+        let is_path = |name: &str| self.frame.paths.iter().any(|(known, _)| *known == name);
+        let turned = name.split_once('.').map(|(path, read)| (read, path));
+        let ways = [name.rsplit_once('_'), name.rsplit_once('.'), turned];
+        ways.into_iter().flatten().find(|(read, path)| is_path(path) && self.is_read_of_paths(read))
     }
 
     /// The label that a template's parameter stands for.
@@ -211,7 +212,7 @@ impl Context for PathContext<'_> {
             return Diagnostic::error("misplaced-action", span, message).with_help(help);
         }
         let diagnostic = Diagnostic::error("unknown-name", span, format!("no constant `{name}`"));
-        if let Some((read, path)) = self.with_underscore(name) {
+        if let Some((read, path)) = self.written_otherwise(name) {
             return diagnostic.with_help(format!("write `{read}[{path}]`"));
         }
         let named = self.systems.iter().flat_map(|s| {

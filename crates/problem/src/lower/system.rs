@@ -251,8 +251,11 @@ fn lower_labels(cx: &mut StateContext, ast: &ast::System, mut labels: Vec<Label>
     labels
 }
 
-/// The enumeration of an expression all of whose values are names of some: the only one that has all of them.
+/// The enumeration of a choice all of whose values are names of some: the only one that has all of them.
 fn only_enumeration(cx: &StateContext, e: &ast::Expr) -> Option<EnumType> {
+    if !matches!(e.kind, ExprKind::If(..)) {
+        return None;
+    }
     let mut values = Vec::new();
     let mut stack = vec![e];
     while let Some(e) = stack.pop() {

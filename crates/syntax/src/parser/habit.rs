@@ -46,7 +46,9 @@ impl Parser<'_> {
     pub(super) fn instead_of_operator(&self) -> Option<&'static str> {
         let before = self.tokens[self.at.saturating_sub(1)];
         Some(match self.peek() {
-            Tok::Prime => "only the left side of an update has a prime; in a formula `X` reads the next step",
+            Tok::Prime => {
+                "only `trans` and the left side of an update have primes; in a formula `X` reads the next step"
+            }
             Tok::Dot if self.token_at(1).is_word() => "what is read of a path is written `goal[p]`",
             Tok::ColonEq => "conditions compare by `==`: `init x == 0;`",
             Tok::Colon if before.text == "case" => "write `if C then A else B`",
