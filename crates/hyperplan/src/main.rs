@@ -8,6 +8,7 @@ mod explain;
 mod failure;
 mod files;
 mod foreign;
+mod gather;
 mod guard;
 mod instances;
 mod load;
@@ -32,7 +33,7 @@ fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(e) => return usage(e),
     };
-    if let Err(failure) = foreign::gather(&mut cli) {
+    if let Err(failure) = gather::gather(&mut cli) {
         Output::new(cli.global.quiet, config::color(cli.global.color)).failure(&failure);
         return failure.status.into();
     }

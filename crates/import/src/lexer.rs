@@ -1,7 +1,9 @@
 //! From text to tokens, of SMV and of the formula languages alike.
 
-use crate::parser::Parse;
 use hyperplan_syntax::{Diagnostic, SourceId, Span};
+
+/// What was read, or the message about what cannot be.
+pub(crate) type Parse<T> = Result<T, Box<Diagnostic>>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Tok {

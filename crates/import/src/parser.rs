@@ -3,6 +3,7 @@
 //! Expressions are read by operator precedence. Chains are flat, and what nests is bounded, so that whatever walks a
 //! tree may recurse.
 
+pub(crate) use crate::lexer::Parse;
 use crate::lexer::{Tok, Token};
 use crate::tree::{Access, Bounds, Expr, Infix, Kind, Name, Word};
 use hyperplan_syntax::ast::{BinaryOp, Ident, UnaryOp};
@@ -10,9 +11,6 @@ use hyperplan_syntax::{Diagnostic, Span};
 
 /// Expressions nested more deeply are refused. Levels of the problem language are less deep than it allows itself.
 const MAX_NESTING: u32 = 200;
-
-/// The message about what cannot be read.
-pub(crate) type Parse<T> = Result<T, Box<Diagnostic>>;
 
 /// How tightly operators bind, as NuSMV has it; temporal ones and the formula languages' `!` in between.
 mod level {

@@ -1,7 +1,7 @@
 //! Paths whose states are not enumerated: each variable is a term, each step a choice among the system's commands, and
 //! of values for what an update leaves open.
 
-use super::step::{InState, after, enabled, enabled_with, within};
+use super::step::{InState, after, clip, enabled, enabled_with, within};
 use crate::names::Names;
 use crate::value::{Val, choose, equal, known, member_of, same, translate, width};
 use crate::writing::at;
@@ -385,16 +385,6 @@ fn in_range(terms: &mut Terms, value: &Val, ty: &Type) -> Term {
 fn one_of(terms: &mut Terms, value: &Val, range: RangeInclusive<i64>) -> Term {
     let each: Vec<Term> = range.map(|code| equal(terms, value, code)).collect();
     terms.or(&each)
-}
-
-/// A new value at its variable's width and bounds: a command that leaves them is not enabled.
-pub(super) fn clip(terms: &mut Terms, value: &Val, ty: &Type) -> Val {
-    let Some((lo, hi)) = bounds(ty) else { return value.clone() };
-    match value {
-        Val::Bits { .. } => Val::Bits { term: value.bits_of_width(terms, width(lo, hi)), lo, hi },
-        Val::Cases(cases) => Val::Cases(cases.iter().copied().filter(|c| (lo..=hi).contains(&c.0)).collect()),
-        Val::Bool(_) | Val::Number(_) => value.clone(),
-    }
 }
 
 fn symbol_of(value: &Val) -> Option<Term> {

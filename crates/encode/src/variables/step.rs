@@ -1,8 +1,7 @@
 //! What the commands of a system ask and do, as terms over its variables.
 
-use super::path::clip;
-use crate::value::{Leaves, Val, compare, constant, equal, member_of, merge, same, translate};
-use hyperplan_problem::{Comparison, Expr, LabelMemo, Leaf, System, TransLeaf, Update, VarId};
+use crate::value::{Leaves, Val, compare, constant, equal, member_of, merge, same, translate, width};
+use hyperplan_problem::{Comparison, Expr, LabelMemo, Leaf, System, TransLeaf, Type, Update, VarId};
 use hyperplan_smt::{Term, Terms};
 use hyperplan_space::{Command, Commands, Guard, Listed, NewValue, bounds};
 
@@ -380,4 +379,14 @@ fn only(
     }
     let (none_below, none_above) = (terms.or(&none_below), terms.or(&none_above));
     terms.and2(none_below, none_above)
+}
+
+/// A new value at its variable's width and bounds: a command that leaves them is not enabled.
+pub(super) fn clip(terms: &mut Terms, value: &Val, ty: &Type) -> Val {
+    let Some((lo, hi)) = bounds(ty) else { return value.clone() };
+    match value {
+        Val::Bits { .. } => Val::Bits { term: value.bits_of_width(terms, width(lo, hi)), lo, hi },
+        Val::Cases(cases) => Val::Cases(cases.iter().copied().filter(|c| (lo..=hi).contains(&c.0)).collect()),
+        Val::Bool(_) | Val::Number(_) => value.clone(),
+    }
 }
