@@ -67,7 +67,7 @@ fn formulas() {
     assert_eq!(slip("a & U b").1, "this operator stands between two formulas: `a U b`");
     assert_eq!(slip("x' == 1").0, "syntax: expected an operator or `}`, found `'` @ '");
     assert_eq!(slip("x in y").1, "a set is written `{a, b}`, `0..2` or `enabled[p]`");
-    assert_eq!(slip("x[0] == 1").0, "syntax: expected a path variable, found `0` @ 0");
+    assert_eq!(slip("x[0 + 1] == 1").0, "syntax: expected a path variable, found `0` @ 0");
     assert_eq!(slip("if a then b").1, "an `if` always has an `else`");
     assert_eq!(slip("F[0 T] a").0, "syntax: expected `,` or `]`, found `T` @ T");
     assert_eq!(slip("").0, "syntax: expected an expression, found `}` @ }");

@@ -215,6 +215,10 @@ impl Context for PathContext<'_> {
         if let Some((read, path)) = self.written_otherwise(name) {
             return diagnostic.with_help(format!("write `{read}[{path}]`"));
         }
+        if let Some((read, _)) = name.split_once('[').filter(|(read, _)| self.is_read_of_paths(read)) {
+            let path = self.frame.paths.first().map_or("p", |(path, _)| path);
+            return diagnostic.with_help(format!("in brackets stands a path: write `{read}[{path}]`"));
+        }
         let named = self.systems.iter().flat_map(|s| {
             let labels = s.labels.iter().map(|l| l.name.as_str());
             labels.chain(s.vars.iter().map(|v| v.name.as_str()))

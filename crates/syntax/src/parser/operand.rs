@@ -201,7 +201,8 @@ impl Parser<'_> {
         let mut items = vec![*node.expr];
         items.extend(rest);
         let whole = self.since(open.span);
-        if self.peek() == Tok::Ident && !self.token().first_on_line && self.peek_at(1) == Tok::LBracket {
+        let name = self.peek() == Tok::Ident && self.token().infix().is_none();
+        if name && !self.token().first_on_line && self.peek_at(1) == Tok::LBracket {
             let help = "an interval is written in brackets: `F[0,T] goal[p]`";
             return self.fail_with("an operator", Some(help.to_owned()));
         }

@@ -192,6 +192,8 @@ fn unused_paths_are_warned_of() {
 fn mistakes_in_objectives() {
     let cases = [
         ("goal", "missing-path", "goal"),
+        ("goal[0]", "unknown-name", "goal[0]"),
+        ("goal.p", "unknown-name", "goal.p"),
         ("gaol[p]", "unknown-name", "gaol"),
         ("goal[q]", "unquantified-path", "q"),
         ("goal[p, p]", "argument-count", "goal[p, p]"),
