@@ -89,6 +89,14 @@ pub(crate) struct Others {
     /// Where FILE is a model of another tool: models of further quantifiers, and the formula
     #[arg(value_name = "MORE")]
     pub(crate) more: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+}
+
+/// How formulas of other tools are read.
+#[derive(Clone, Debug, Args)]
+#[group(skip)]
+pub(crate) struct Reading {
     /// The number of steps of each path, for formulas of other tools: read `within K`
     #[arg(long, value_name = "K")]
     pub(crate) bound: Option<u32>,
@@ -433,7 +441,7 @@ pub(crate) struct Verify {
     #[command(flatten)]
     pub(crate) plan: Plan,
     #[command(flatten)]
-    pub(crate) others: Others,
+    pub(crate) reading: Reading,
     /// What a solver printed for a query that `emit` wrote: its model, by (get-model) or (get-value (...));
     /// `-` is standard input
     #[arg(long, value_name = "FILE", conflicts_with = "actions")]
@@ -468,7 +476,7 @@ pub(crate) struct Plot {
     #[command(flatten)]
     pub(crate) plan: Plan,
     #[command(flatten)]
-    pub(crate) others: Others,
+    pub(crate) reading: Reading,
     #[command(flatten)]
     pub(crate) selection: Selection,
     /// An .svg (or .txt) file; without it, text on standard output

@@ -1,6 +1,6 @@
 //! Which files were given: a problem file, or those of other tools, and a strategy.
 
-use crate::args::{Cli, Command, Others, Plan};
+use crate::args::{Cli, Command, Plan, Reading};
 use crate::failure::{Failure, Result};
 use crate::files::{self, read_source};
 use crate::foreign::Foreign;
@@ -10,26 +10,34 @@ use std::path::{Path, PathBuf};
 /// Sorts what was typed behind the file: models and formulas belong to it, a strategy is one. Texts are read.
 pub(crate) fn gather(cli: &mut Cli) -> Result<()> {
     match &mut cli.command {
-        Command::Solve(args) => args.problem.foreign = found(&args.problem.file, &mut args.others, None)?,
-        Command::Horizon(args) => args.problem.foreign = found(&args.problem.file, &mut args.others, None)?,
-        Command::Check(args) => args.problem.foreign = found(&args.problem.file, &mut args.others, None)?,
-        Command::Import(args) => args.problem.foreign = found(&args.problem.file, &mut args.others, None)?,
+        Command::Solve(args) => {
+            args.problem.foreign = found(&args.problem.file, &mut args.others.more, &args.others.reading)?
+        }
+        Command::Horizon(args) => {
+            args.problem.foreign = found(&args.problem.file, &mut args.others.more, &args.others.reading)?
+        }
+        Command::Check(args) => {
+            args.problem.foreign = found(&args.problem.file, &mut args.others.more, &args.others.reading)?
+        }
+        Command::Import(args) => {
+            args.problem.foreign = found(&args.problem.file, &mut args.others.more, &args.others.reading)?
+        }
         Command::Verify(args) => {
-            let plan = Some(&mut args.plan);
-            args.problem.foreign = found(&args.problem.file, &mut args.others, plan)?;
+            let mut more = behind(&mut args.plan);
+            args.problem.foreign = found(&args.problem.file, &mut more, &args.reading)?;
             one_strategy(&args.plan, args.model.is_some())?;
-            if args.model.is_none() && args.plan.strategy.is_none() && args.plan.actions.is_empty() {
+            if args.model.is_none() && args.plan.strategy.is_empty() && args.plan.actions.is_empty() {
                 return Err(Failure::input("a strategy is needed: STRATEGY.json, --actions or --model"));
             }
         }
         Command::Plot(args) => {
-            let plan = Some(&mut args.plan);
-            args.problem.foreign = found(&args.problem.file, &mut args.others, plan)?;
+            let mut more = behind(&mut args.plan);
+            args.problem.foreign = found(&args.problem.file, &mut more, &args.reading)?;
             one_strategy(&args.plan, false)?;
         }
         Command::Emit(args) => {
             if let Some(file) = &args.file {
-                args.foreign = found(file, &mut args.others, None)?;
+                args.foreign = found(file, &mut args.others.more, &args.others.reading)?;
             }
         }
         Command::Compare(_)
@@ -44,7 +52,7 @@ pub(crate) fn gather(cli: &mut Cli) -> Result<()> {
 }
 
 fn one_strategy(plan: &Plan, model: bool) -> Result<()> {
-    if plan.strategy.is_some() && (model || !plan.actions.is_empty()) {
+    if !plan.strategy.is_empty() && (model || !plan.actions.is_empty()) {
         let other = if model { "--model" } else { "--actions" };
         return Err(Failure::input(format_args!("a strategy file and {other} cannot be used together")));
     }
@@ -55,20 +63,19 @@ fn kind(path: &Path) -> Option<Kind> {
     Kind::of(path.to_str()?)
 }
 
-fn found(file: &Path, others: &mut Others, plan: Option<&mut Plan>) -> Result<Option<Foreign>> {
-    let mut all: Vec<PathBuf> = std::mem::take(&mut others.more);
-    if let Some(plan) = plan {
-        // What stands second is a strategy, unless it is a model or a formula; then one may stand last.
-        if plan.strategy.as_deref().is_some_and(|second| kind(second).is_some()) {
-            all.splice(0..0, plan.strategy.take());
-            if all.last().is_some_and(|last| kind(last).is_none()) {
-                plan.strategy = all.pop();
-            }
-        }
-    }
+/// The models and formulas among what was given as strategies.
+fn behind(plan: &mut Plan) -> Vec<PathBuf> {
+    let (more, strategies) =
+        std::mem::take(&mut plan.strategy).into_iter().partition(|path| kind(path).is_some());
+    plan.strategy = strategies;
+    more
+}
+
+fn found(file: &Path, more: &mut Vec<PathBuf>, reading: &Reading) -> Result<Option<Foreign>> {
+    let all: Vec<PathBuf> = std::mem::take(more);
     let own = kind(file);
     if own.is_none() {
-        return match (all.first(), others.bound) {
+        return match (all.first(), reading.bound) {
             (Some(other), _) => {
                 let (file, other) = (files::name(file), files::name(other));
                 Err(Failure::input(format_args!(
@@ -82,7 +89,7 @@ fn found(file: &Path, others: &mut Others, plan: Option<&mut Plan>) -> Result<Op
             (None, None) => Ok(None),
         };
     }
-    if let Some(semantics) = others.semantics.as_deref()
+    if let Some(semantics) = reading.semantics.as_deref()
         && !["pes", "opt", "hpes", "hopt"].contains(&semantics)
     {
         return Err(Failure::input(format_args!(
@@ -99,6 +106,6 @@ fn found(file: &Path, others: &mut Others, plan: Option<&mut Plan>) -> Result<Op
         }
         inputs.push(Input { name: path.display().to_string(), text: read_source(path)? });
     }
-    let options = Options { bound: others.bound, semantics: others.semantics.clone() };
+    let options = Options { bound: reading.bound, semantics: reading.semantics.clone() };
     Ok(Some(Foreign { inputs, options }))
 }
