@@ -31,7 +31,7 @@ fn deep_nesting_is_refused() {
     let repeat = |part: &str| part.repeat(MANY);
     let deep = "nested more than 500 levels deep";
     refused(format!("const A = {}1{};", repeat("("), repeat(")")), 1, deep);
-    for part in ["!", "X ", "if a then ", "if a then b else ", "a -> ", "a U ", "- ", "F[0,", "(a, "] {
+    for part in ["!", "X ", "if a then ", "if a then b else 1 + ", "a -> ", "a U ", "- ", "F[0,", "(a, "] {
         refused(format!("const A = {}a;", repeat(part)), 1, deep);
     }
 }
@@ -41,6 +41,10 @@ fn long_chains_are_read() {
     let start = "system S {\n  state x: 0..1;\n  on step { x' = x; }\n  label a = x == 0";
     let chain = " & x == 0".repeat(MANY);
     let run = check(format!("{start}{chain};\n}}\nobjective o {{ exists p. a[p] }}\n"));
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    // Conditions that follow one another nest nothing.
+    let chain = "if 0 == 1 then 2 else ".repeat(MANY);
+    let run = check(format!("const A = {chain}3;\n{start};\n}}\nobjective o {{ exists p. a[p] }}\n"));
     assert_eq!(run.status, 0, "{}", run.stderr);
     // What is doubtful of so long a formula is another question.
     let folder = tempfile::tempdir().expect("a temporary folder");
