@@ -33,6 +33,10 @@ pub(crate) fn confirm(
             }
             .into())
         }
+        // There is nothing that a second query could ask.
+        verify::Check::TooLarge { .. } if objective.blocks().len() < 2 => {
+            Err(Stop::Unknown(Reason::TooManySteps))
+        }
         verify::Check::TooLarge { .. } => match defeated(encoder, config, strategy)? {
             false => Ok(Verified::BySolver),
             true => Err(Error::Bug("a second query defeats it".into()).into()),

@@ -37,6 +37,9 @@ pub enum Reason {
     /// The checker's own numbers outgrew ours.
     #[error(transparent)]
     Checker(verify::Error),
+    /// A system has states with more transitions than the checker looks at.
+    #[error("there are more transitions from a state than the checker looks at; use `within K`")]
+    TooManySteps,
     /// What nobody could check is no answer.
     #[error("a strategy was found, but could not be verified: {0}")]
     Unverified(Box<Reason>),
@@ -69,7 +72,7 @@ impl Reason {
             Reason::DeadEnds { .. } => ReasonCode::DeadEnds,
             Reason::NoEnd(_) => ReasonCode::NoEnd,
             Reason::LargeNumbers | Reason::LargeModel | Reason::Checker(_) => ReasonCode::LargeNumbers,
-            Reason::Unverified(_) => ReasonCode::Unverified,
+            Reason::TooManySteps | Reason::Unverified(_) => ReasonCode::Unverified,
             Reason::Several(_) => ReasonCode::Several,
         }
     }

@@ -451,6 +451,10 @@ impl<'p> Graph<'p> {
             Liveness::Dead => return Ok(false),
             Liveness::Unknown | Liveness::Open => {}
         }
+        if self.can_stay(state)? {
+            self.nodes[state].liveness = Liveness::Live;
+            return Ok(true);
+        }
         let mut stack = vec![(state, self.moves(state)?, 0_usize)];
         self.nodes[state].liveness = Liveness::Open;
         while let Some((here, moves, next)) = stack.last_mut() {
@@ -473,6 +477,22 @@ impl<'p> Graph<'p> {
                     }
                     return Ok(true);
                 }
+            }
+        }
+        Ok(false)
+    }
+
+    /// Whether a transition leads back to the state; asked only where one may lead to too many states to list.
+    fn can_stay(&self, state: StateId) -> Result<bool, Stop> {
+        let mut updates = self.system.clauses.iter().flat_map(|clause| &clause.updates);
+        if self.nodes[state].moves.is_some()
+            || !updates.any(|(_, update)| matches!(update, Update::Within(..)))
+        {
+            return Ok(false);
+        }
+        for &action in &self.system.actions {
+            if self.has_step(state, action, state)? {
+                return Ok(true);
             }
         }
         Ok(false)

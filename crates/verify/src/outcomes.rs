@@ -41,6 +41,7 @@ fn can_always_act(
     budget: &Budget,
 ) -> Result<bool, Stop> {
     let limit = usize::try_from(budget.states).unwrap_or(usize::MAX);
+    let mut moves = 0;
     let mut graph = Graph::new(&problem.systems[objective.paths[trace.path].system], limit);
     let mut here = match trace.states.first() {
         Some(first) if graph.is_state(first) => vec![graph.intern(first)?],
@@ -50,6 +51,10 @@ fn can_always_act(
         let mut next = Vec::new();
         for state in here {
             let after = graph.after(state, *action)?;
+            moves += after.len() as u64;
+            if moves > budget.moves {
+                return Err(Stop::Budget);
+            }
             if after.is_empty() {
                 return Ok(false);
             }

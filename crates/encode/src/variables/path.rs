@@ -116,6 +116,10 @@ impl Builder<'_> {
             let step = self.choice(&mut script.terms, time + 1, false);
             // The inputs of a step are the new values themselves.
             let there = self.variables(&mut script.terms, time + 1, false);
+            for &var in &self.commands.inputs {
+                let range = self.input_in_range(&mut script.terms, var, &there);
+                script.assert(range);
+            }
             let enabled = enabled_with(self.commands, &mut script.terms, self.system(), &here, &there);
             let possible = possible(&mut script.terms, &step.commands, &enabled);
             script.assert(possible);
@@ -149,6 +153,7 @@ impl Builder<'_> {
                 let input = self.variable(terms, var, time + 1, true);
                 bound.extend(symbol_of(&input));
                 inputs[usize::from(var)] = input;
+                guards.push(self.input_in_range(terms, var, &inputs));
             }
             let enabled = enabled_with(self.commands, terms, self.system(), &here, &inputs);
             guards.push(possible(terms, &step.commands, &enabled));
@@ -244,6 +249,11 @@ impl Builder<'_> {
         let mut parts: Vec<Term> = ranges.map(|(value, var)| in_range(terms, value, &var.ty)).collect();
         parts.push(translate(terms, &system.init, &mut InState::new(system, state)).truth());
         terms.and(&parts)
+    }
+
+    /// That an input is in its variable's range, which comparisons then take for granted.
+    fn input_in_range(&self, terms: &mut Terms, var: VarId, inputs: &[Val]) -> Term {
+        in_range(terms, &inputs[usize::from(var)], &self.system().vars[var].ty)
     }
 
     /// The choice of a command.
