@@ -302,7 +302,8 @@ impl System {
     }
 
     /// The labels that a label reads, directly or not, in an order in which each reads only those before it.
-    fn labels_below(&self, label: LabelId) -> Vec<LabelId> {
+    #[must_use]
+    pub fn labels_below(&self, label: LabelId) -> Vec<LabelId> {
         let mut needed = vec![false; usize::from(label) + 1];
         needed[usize::from(label)] = true;
         // A label reads only labels before it.

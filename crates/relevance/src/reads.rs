@@ -1,7 +1,7 @@
 //! What expressions read of paths.
 
 use hyperplan_problem::{Expr, PathId, PathLeaf, System};
-use hyperplan_space::{Graph, StateIx, eval_in};
+use hyperplan_space::{Graph, StateIx};
 
 /// The path whose state alone an expression reads, if there is one.
 pub fn only_path(expr: &Expr<PathLeaf>) -> Option<PathId> {
@@ -19,7 +19,7 @@ pub fn only_path(expr: &Expr<PathLeaf>) -> Option<PathId> {
 /// What a leaf is in a state of its path; `None` where it reads more than that.
 pub fn in_state(system: &System, graph: &Graph, leaf: &PathLeaf, state: StateIx) -> Option<i64> {
     match *leaf {
-        PathLeaf::State(_, leaf) => Some(eval_in(system, &Expr::Leaf(leaf), graph.codes(state))),
+        PathLeaf::State(_, leaf) => Some(graph.leaf(system, state, leaf)),
         PathLeaf::Enabled(_, action) => Some(i64::from(graph.enables(state, action))),
         PathLeaf::Halted(_) => Some(i64::from(graph.halts(state))),
         PathLeaf::Took(..) | PathLeaf::SameAction(..) | PathLeaf::SameState(..) => None,

@@ -1,6 +1,6 @@
 //! What transitions do besides, as updates of the clauses and edges that give them.
 
-use crate::eval::eval_in;
+use crate::row::Row;
 use hyperplan_problem::{ActionId, Also, AttributeId, Expr, Leaf, StepLeaf, System, Update, Value, VarId};
 
 /// Updates of different variables.
@@ -28,12 +28,10 @@ pub(crate) fn applicable<'s>(
 
 /// Of these clauses, the updates of those whose guards hold in a state.
 pub(crate) fn applied<'u>(
-    system: &System,
     all: &'u [(&Also, Updates)],
-    codes: &[i64],
+    from: &Row<'_>,
 ) -> impl Iterator<Item = &'u (VarId, Update)> {
-    let here = all.iter().filter(|(also, _)| eval_in(system, &also.guard, codes) != 0);
-    here.flat_map(|(_, updates)| updates)
+    all.iter().filter(|(also, _)| from.holds(&also.guard)).flat_map(|(_, updates)| updates)
 }
 
 /// What the transitions do besides that have that action and these numbers, whatever guards say: what applies where is

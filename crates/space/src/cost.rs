@@ -1,7 +1,7 @@
 //! What the transitions of a graph cost.
 
-use crate::eval::eval_in;
 use crate::graph::{Graph, StateIx};
+use crate::row::Row;
 use hyperplan_problem::{ActionId, Cost, Expr, Leaf, StepLeaf, System, Value};
 use rustc_hash::FxHashMap;
 
@@ -14,9 +14,10 @@ pub fn step_costs(system: &System, graph: &Graph, cost: &Cost) -> Vec<i64> {
     // Without numbers, what an action costs is the same for all its outcomes.
     let mut known: FxHashMap<ActionId, Expr<Leaf>> = FxHashMap::default();
     let mut all = Vec::with_capacity(graph.transitions.len());
+    let mut here = Row::new(system);
     for state in 0..graph.len() as StateIx {
-        let codes = graph.codes(state);
-        if eval_in(system, &system.absorb, codes) != 0 {
+        here.turn(graph.codes(state));
+        if here.holds(&system.absorb) {
             all.extend(graph.successors(state).iter().map(|_| 0));
             continue;
         }
@@ -25,7 +26,7 @@ pub fn step_costs(system: &System, graph: &Graph, cost: &Cost) -> Vec<i64> {
             let Some(edges) = edges else {
                 let zero = |_| Expr::Const(Value::Int(0));
                 let own = known.entry(action).or_insert_with(|| cost.expr.of_state(action, &zero));
-                all.push(eval_in(system, own, codes));
+                all.push(here.eval(own));
                 continue;
             };
             let node = |state: StateIx| graph.codes(state)[usize::from(edges.var)];
@@ -33,7 +34,7 @@ pub fn step_costs(system: &System, graph: &Graph, cost: &Cost) -> Vec<i64> {
             let taken = leaving.find(|(_, e)| e.action == action && i64::from(e.to) == node(next));
             let number =
                 |attribute| Expr::Const(Value::Int(taken.map_or(0, |(at, _)| edges.number(at, attribute))));
-            all.push(eval_in(system, &cost.expr.of_state(action, &number), codes));
+            all.push(here.eval(&cost.expr.of_state(action, &number)));
         }
     }
     all

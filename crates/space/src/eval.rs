@@ -1,7 +1,7 @@
 //! Expressions evaluated on concrete states: of a finite system as a row of integers (Booleans are 0 and 1,
 //! enumeration values their position), which is fast; of any system as values.
 
-use hyperplan_problem::{Comparison, Expr, LabelMemo, Leaf, System, TransLeaf, Type, Value};
+use hyperplan_problem::{Comparison, Expr, Leaf, System, TransLeaf, Type, Value};
 
 /// A value of a finite type as an integer.
 pub fn code(value: Value) -> i64 {
@@ -63,36 +63,14 @@ pub fn eval<L>(expr: &Expr<L>, leaf: &mut impl FnMut(&L) -> i64) -> i64 {
             eval(last, leaf)
         }
         Expr::Member(es, set) => {
+            let mut short = [0; 4];
+            if let Some(tuple) = short.get_mut(..es.len()) {
+                tuple.iter_mut().zip(es).for_each(|(value, e)| *value = eval(e, leaf));
+                return i64::from(set.contains(tuple));
+            }
             let tuple: Vec<i64> = es.iter().map(|e| eval(e, leaf)).collect();
             i64::from(set.contains(&tuple))
         }
-    }
-}
-
-/// The value of an expression over one system in a state.
-pub fn eval_in(system: &System, expr: &Expr<Leaf>, state: &[i64]) -> i64 {
-    let mut labels = LabelMemo::default();
-    eval(expr, &mut |leaf| code_of(system, *leaf, state, &mut labels))
-}
-
-/// The value of an expression over a step of one system, between two states.
-pub fn eval_trans(system: &System, expr: &Expr<TransLeaf>, from: &[i64], to: &[i64]) -> i64 {
-    let (mut before, mut after) = (LabelMemo::default(), LabelMemo::default());
-    eval(expr, &mut |leaf| match *leaf {
-        TransLeaf::Before(leaf) => code_of(system, leaf, from, &mut before),
-        TransLeaf::After(leaf) => code_of(system, leaf, to, &mut after),
-    })
-}
-
-fn code_of(system: &System, leaf: Leaf, state: &[i64], labels: &mut LabelMemo<i64>) -> i64 {
-    match leaf {
-        Leaf::Var(v) => state[usize::from(v)],
-        Leaf::Label(l) => labels.find(system, l, &mut |expr, known| {
-            eval(expr, &mut |leaf| match *leaf {
-                Leaf::Var(v) => state[usize::from(v)],
-                Leaf::Label(l) => known.known(l).unwrap_or(0),
-            })
-        }),
     }
 }
 

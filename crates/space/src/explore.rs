@@ -1,12 +1,14 @@
 //! Enumerating the reachable states of a system, breadth first from its initial ones.
 
 use crate::also::{Updates, applicable, applied, no_number};
-use crate::eval::{bounds, eval_in};
-use crate::graph::{Graph, LIVE, Letter, StateIx, TooLarge};
+use crate::eval::bounds;
+use crate::graph::{Graph, LIVE, Letter, StateIx, TooLarge, sources};
+use crate::index::Met;
+use crate::row::{Row, Rows};
 use crate::step::{Steps, conjuncts, variables_read};
 use hyperplan_problem::{ActionId, Also, Clause, Expr, Leaf, System, Update, Value, VarId};
 use rustc_hash::FxHashMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 impl Graph {
     /// Enumerates a system, unless it has more than `budget` reachable states (or as many transitions times 16).
@@ -17,24 +19,23 @@ impl Graph {
         if is_too_wide(system, budget) {
             return Err(TooLarge);
         }
-        let packing = Packing::new(system).ok_or(TooLarge)?;
         let mut explorer = Explorer {
             system,
             budget,
-            packing,
-            width: system.vars.len(),
-            codes: Vec::new(),
-            index: FxHashMap::default(),
+            met: Met::new(system, budget)?,
+            here: Row::new(system),
+            next: Rows::default(),
             steps: Steps::new(system),
             also: FxHashMap::default(),
             positions: (0u32..).zip(&system.actions).map(|(at, action)| (*action, at)).collect(),
         };
         let initial = explorer.initial_states()?;
         let (starts, edges) = explorer.edges()?;
-        let Explorer { codes, width, .. } = explorer;
+        let (width, codes) = (system.vars.len(), explorer.met.codes);
         let (letters, transitions) = number_letters(system, &starts, &edges);
         let rank = ranks(&starts, &transitions);
-        Ok(Graph { width, codes, initial, letters, starts, transitions, rank })
+        let labels = vec![OnceLock::new(); system.labels.len()];
+        Ok(Graph { width, codes, initial, letters, starts, transitions, rank, labels })
     }
 }
 
@@ -80,45 +81,14 @@ impl Graphs {
     }
 }
 
-/// Packs a state into one integer, mixed radix.
-struct Packing {
-    /// Least code and number of codes of each variable.
-    radix: Vec<(i64, u128)>,
-}
-
-impl Packing {
-    fn new(system: &System) -> Option<Packing> {
-        let radix: Vec<(i64, u128)> = system
-            .vars
-            .iter()
-            .map(|var| {
-                let (lo, hi) = bounds(&var.ty)?;
-                Some((lo, (hi - lo) as u128 + 1))
-            })
-            .collect::<Option<_>>()?;
-        radix.iter().try_fold(1u128, |product, (_, n)| product.checked_mul(*n))?;
-        Some(Packing { radix })
-    }
-
-    /// `None` where a value is outside its type.
-    fn pack(&self, codes: &[i64]) -> Option<u128> {
-        let mut packed = 0u128;
-        for (&value, &(lo, n)) in codes.iter().zip(&self.radix) {
-            let digit = u128::try_from(value.checked_sub(lo)?).ok().filter(|d| *d < n)?;
-            packed = packed * n + digit;
-        }
-        Some(packed)
-    }
-}
-
 struct Explorer<'a> {
     system: &'a System,
     budget: usize,
-    packing: Packing,
-    width: usize,
-    codes: Vec<i64>,
+    met: Met,
+    /// The state whose transitions are being found, and where some lead.
+    here: Row<'a>,
+    next: Rows,
     steps: Steps<'a>,
-    index: FxHashMap<u128, StateIx>,
     /// What transitions with an action do besides, by its position, where it is the same for all.
     also: FxHashMap<u32, Vec<(&'a Also, Updates)>>,
     /// The position of each action in the system.
@@ -129,45 +99,38 @@ struct Explorer<'a> {
 type Edges = Vec<(u32, StateIx)>;
 
 impl Explorer<'_> {
-    /// The index of a state, new or known; `None` where it is outside the types.
-    fn intern(&mut self, codes: &[i64]) -> Result<Option<StateIx>, TooLarge> {
-        let Some(packed) = self.packing.pack(codes) else { return Ok(None) };
-        let next = self.index.len();
-        if let Some(&known) = self.index.get(&packed) {
-            return Ok(Some(known));
-        }
-        if next >= self.budget {
-            return Err(TooLarge);
-        }
-        let id = next as StateIx;
-        self.index.insert(packed, id);
-        self.codes.extend_from_slice(codes);
-        Ok(Some(id))
-    }
-
     /// Every assignment that satisfies `init`, variable by variable; each conjunct is tested as soon as the
     /// variables that it reads are assigned.
     fn initial_states(&mut self) -> Result<Vec<StateIx>, TooLarge> {
         let system = self.system;
-        let mut tests: Vec<Vec<&Expr<Leaf>>> = vec![Vec::new(); self.width + 1];
+        let width = system.vars.len();
+        let mut tests: Vec<Vec<&Expr<Leaf>>> = vec![Vec::new(); width + 1];
         for conjunct in conjuncts(&system.init) {
             tests[variables_needed(system, conjunct)].push(conjunct);
         }
         let mut initial = Vec::new();
-        if tests[0].iter().any(|e| eval_in(system, e, &[]) == 0) {
+        let row = &mut self.here;
+        let mut fits = |codes: &[i64]| {
+            let tests = &tests[codes.len()];
+            if !tests.is_empty() {
+                row.turn(codes);
+            }
+            tests.iter().all(|e| row.holds(e))
+        };
+        if !fits(&[]) {
             return Ok(initial);
         }
         let types: Vec<(i64, i64)> = system.vars.iter().filter_map(|v| bounds(&v.ty)).collect();
-        let mut codes: Vec<i64> = Vec::with_capacity(self.width);
+        let mut codes: Vec<i64> = Vec::with_capacity(width);
         let mut visited = 0usize;
         // Depth-first over prefixes; `codes` holds the current prefix.
         loop {
-            if codes.len() == self.width {
-                initial.extend(self.intern(&codes)?);
+            if codes.len() == width {
+                initial.extend(self.met.meet(&codes)?);
             } else {
                 codes.push(types[codes.len()].0);
                 visited += 1;
-                if tests[codes.len()].iter().all(|e| eval_in(system, e, &codes) != 0) {
+                if fits(&codes) {
                     continue;
                 }
             }
@@ -179,7 +142,7 @@ impl Explorer<'_> {
                     if visited > self.budget.saturating_mul(16) {
                         return Err(TooLarge);
                     }
-                    if tests[codes.len()].iter().all(|e| eval_in(system, e, &codes) != 0) {
+                    if fits(&codes) {
                         break;
                     }
                 }
@@ -193,10 +156,10 @@ impl Explorer<'_> {
         let mut edges: Edges = Vec::new();
         let mut found = Vec::new();
         let mut at = 0usize;
-        while at < self.index.len() {
-            let codes = self.codes[at * self.width..(at + 1) * self.width].to_vec();
+        while at < self.met.len() {
+            self.here.turn(self.met.codes(at));
             found.clear();
-            self.successors(&codes, &mut found)?;
+            self.successors(at as StateIx, &mut found)?;
             found.sort_unstable();
             found.dedup();
             edges.extend_from_slice(&found);
@@ -209,39 +172,49 @@ impl Explorer<'_> {
         Ok((starts, edges))
     }
 
-    fn successors(&mut self, codes: &[i64], found: &mut Edges) -> Result<(), TooLarge> {
+    fn successors(&mut self, state: StateIx, found: &mut Edges) -> Result<(), TooLarge> {
         let system = self.system;
-        if eval_in(system, &system.absorb, codes) != 0 {
-            if let Some(here) = self.intern(codes)? {
-                found.extend((0..system.actions.len() as u32).map(|a| (a, here)));
-            }
+        if self.here.holds(&system.absorb) {
+            found.extend((0..system.actions.len() as u32).map(|a| (a, state)));
             return Ok(());
         }
         for clause in &system.clauses {
-            if eval_in(system, &clause.guard, codes) == 0 {
+            if !self.here.holds(&clause.guard) {
                 continue;
             }
             if system.also.is_empty() {
-                for next in self.steps.outcomes(&clause.updates, codes, self.budget)? {
-                    if let Some(next) = self.intern(&next)? {
+                self.steps.outcomes(clause.updates.iter(), &self.here, self.budget, &mut self.next)?;
+                for next in self.next.iter() {
+                    if let Some(next) = self.met.meet(next)? {
                         found.extend(action_positions(system, clause).map(|a| (a, next)));
                     }
                 }
                 continue;
             }
             for at in action_positions(system, clause) {
-                let besides = self.besides(at, None, codes);
-                let updates = clause.updates.iter().chain(&besides);
-                for next in self.steps.outcomes(updates, codes, self.budget)? {
-                    found.extend(self.intern(&next)?.map(|next| (at, next)));
-                }
+                let besides = self.besides(at, None);
+                self.step(at, clause.updates.iter().chain(&besides), found)?;
             }
         }
-        self.listed(codes, found)
+        self.listed(found)
+    }
+
+    /// The transitions of an action that make these updates.
+    fn step<'u>(
+        &mut self,
+        action: u32,
+        updates: impl Iterator<Item = &'u (VarId, Update)> + Clone,
+        found: &mut Edges,
+    ) -> Result<(), TooLarge> {
+        self.steps.outcomes(updates, &self.here, self.budget, &mut self.next)?;
+        for next in self.next.iter() {
+            found.extend(self.met.meet(next)?.map(|next| (action, next)));
+        }
+        Ok(())
     }
 
     /// What a transition does besides in a state, one with that action that follows this edge.
-    fn besides(&mut self, action: u32, edge: Option<usize>, codes: &[i64]) -> Updates {
+    fn besides(&mut self, action: u32, edge: Option<usize>) -> Updates {
         let system = self.system;
         let edges = system.edges.as_ref().filter(|edges| !edges.attributes().is_empty()).zip(edge);
         let number = |attribute| match edges {
@@ -258,24 +231,19 @@ impl Explorer<'_> {
             }
             None => self.also.entry(action).or_insert_with(find),
         };
-        applied(system, all, codes).cloned().collect()
+        applied(all, &self.here).cloned().collect()
     }
 
     /// The transitions that the system lists one by one.
-    fn listed(&mut self, codes: &[i64], found: &mut Edges) -> Result<(), TooLarge> {
+    fn listed(&mut self, found: &mut Edges) -> Result<(), TooLarge> {
         let Some(edges) = &self.system.edges else { return Ok(()) };
-        let var = usize::from(edges.var);
-        for (at, edge) in edges.numbered(u32::try_from(codes[var]).unwrap_or(u32::MAX)) {
+        let here = u32::try_from(self.here.leaf(Leaf::Var(edges.var))).unwrap_or(u32::MAX);
+        for (at, edge) in edges.numbered(here) {
             let Some(&action) = self.positions.get(&edge.action) else { continue };
-            let mut updates = if self.system.also.is_empty() {
-                Updates::new()
-            } else {
-                self.besides(action, Some(at), codes)
-            };
+            let also = !self.system.also.is_empty();
+            let mut updates = if also { self.besides(action, Some(at)) } else { Updates::new() };
             updates.push((edges.var, Update::Assign(Expr::Const(Value::Enum(edge.to)))));
-            for next in self.steps.outcomes(&updates, codes, self.budget)? {
-                found.extend(self.intern(&next)?.map(|next| (action, next)));
-            }
+            self.step(action, updates.iter(), found)?;
         }
         Ok(())
     }
@@ -325,7 +293,10 @@ fn ranks(starts: &[u32], transitions: &[(Letter, StateIx)]) -> Vec<u32> {
     if queue.is_empty() {
         return rank;
     }
-    let (ends, before) = predecessors(starts, transitions);
+    let of = |state: StateIx| starts[state as usize] as usize..starts[state as usize + 1] as usize;
+    let edges = (0..left.len() as StateIx)
+        .flat_map(|from| transitions[of(from)].iter().map(move |&(_, to)| (from, to)));
+    let (ends, before) = sources(left.len(), edges);
     let mut longest = vec![0u32; left.len()];
     let mut next = 0;
     while let Some(&state) = queue.get(next) {
@@ -342,26 +313,4 @@ fn ranks(starts: &[u32], transitions: &[(Letter, StateIx)]) -> Vec<u32> {
         }
     }
     rank
-}
-
-/// Who leads to each state, once per transition: where the predecessors of each state start, and they.
-fn predecessors(starts: &[u32], transitions: &[(Letter, StateIx)]) -> (Vec<u32>, Vec<StateIx>) {
-    let count = starts.len() - 1;
-    let mut ends = vec![0u32; count + 2];
-    for &(_, next) in transitions {
-        ends[next as usize + 2] += 1;
-    }
-    for at in 0..count {
-        ends[at + 2] += ends[at + 1];
-    }
-    // Filling in a state's predecessors moves the start of its own to that of the next state's.
-    let mut states = vec![0; transitions.len()];
-    for state in 0..count {
-        for &(_, next) in &transitions[starts[state] as usize..starts[state + 1] as usize] {
-            let slot = &mut ends[next as usize + 1];
-            states[*slot as usize] = state as StateIx;
-            *slot += 1;
-        }
-    }
-    (ends, states)
 }

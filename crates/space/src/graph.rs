@@ -5,7 +5,9 @@
 //! action.
 
 use crate::eval::{code, decode};
-use hyperplan_problem::{ActionId, State, System, Value};
+use crate::row::Row;
+use hyperplan_problem::{ActionId, Leaf, State, System, Value};
+use std::sync::OnceLock;
 
 /// The index of a state of a [`Graph`].
 pub type StateIx = u32;
@@ -33,6 +35,8 @@ pub struct Graph {
     pub(crate) transitions: Vec<(Letter, StateIx)>,
     /// The length of the longest path from each state; [`LIVE`] where there is no longest.
     pub rank: Vec<u32>,
+    /// What each label is, by state; of those that were asked for.
+    pub(crate) labels: Vec<OnceLock<Box<[i64]>>>,
 }
 
 /// Why a system was not enumerated.
@@ -57,6 +61,27 @@ impl Graph {
     pub fn codes(&self, state: StateIx) -> &[i64] {
         let at = state as usize * self.width;
         &self.codes[at..at + self.width]
+    }
+
+    /// What a variable or a label of the graph's system is in a state, as a code.
+    #[must_use]
+    pub fn leaf(&self, system: &System, state: StateIx, leaf: Leaf) -> i64 {
+        match leaf {
+            Leaf::Var(var) => self.codes(state)[usize::from(var)],
+            Leaf::Label(label) => {
+                self.labels[usize::from(label)].get_or_init(|| self.label(system, leaf))[state as usize]
+            }
+        }
+    }
+
+    /// What a label is in each state.
+    fn label(&self, system: &System, label: Leaf) -> Box<[i64]> {
+        let mut row = Row::new(system);
+        let mut of = |state| {
+            row.turn(self.codes(state));
+            row.leaf(label)
+        };
+        (0..self.len() as StateIx).map(&mut of).collect()
     }
 
     /// A state as values.
@@ -133,4 +158,25 @@ impl Graph {
     pub fn all_live(&self) -> bool {
         self.rank.iter().all(|&r| r == LIVE)
     }
+}
+
+/// From where edges, each with its source and its target, lead to each of `count` nodes, once per edge: where the sources
+/// of each start, and they.
+#[must_use]
+pub fn sources(count: usize, edges: impl Iterator<Item = (u32, u32)> + Clone) -> (Vec<u32>, Vec<u32>) {
+    let mut starts = vec![0u32; count + 2];
+    for (_, to) in edges.clone() {
+        starts[to as usize + 2] += 1;
+    }
+    for at in 2..starts.len() {
+        starts[at] += starts[at - 1];
+    }
+    // Filling in a node's sources moves the start of its own to that of the next node's.
+    let mut sources = vec![0; starts[count + 1] as usize];
+    for (from, to) in edges {
+        let slot = &mut starts[to as usize + 1];
+        sources[*slot as usize] = from;
+        *slot += 1;
+    }
+    (starts, sources)
 }

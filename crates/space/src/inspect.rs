@@ -1,10 +1,11 @@
 //! What `check` wants to know of a system's reachable states.
 
 use crate::also::{Updates, applicable, applied, no_number};
-use crate::eval::{bounds, eval_in};
+use crate::eval::bounds;
 use crate::graph::{Graph, StateIx};
+use crate::row::{Row, Rows};
 use crate::step::{Steps, update_values_unclipped};
-use hyperplan_problem::{ActionId, Expr, LabelId, Leaf, System, Type, Var};
+use hyperplan_problem::{ActionId, LabelId, Leaf, System, Type, Var};
 
 /// Things that are probably not meant, each with a reachable state as an example.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -38,62 +39,66 @@ pub fn inspect(system: &System, graph: &Graph, stop: &dyn Fn() -> bool) -> Optio
     findings.idle = (0..system.also.len()).collect();
     let truths: Vec<bool> = system.labels.iter().map(|label| label.ty == Type::Bool).collect();
     let steps = Steps::new(system);
+    let mut here = Row::new(system);
     for state in 0..graph.len() as StateIx {
         if state % STRIDE == 0 && stop() {
             return None;
         }
-        let codes = graph.codes(state);
+        here.turn(graph.codes(state));
         if graph.successors(state).is_empty() {
             let (count, _) = findings.dead_ends.get_or_insert((0, state));
             *count += 1;
         }
         for (at, seen) in seen.iter_mut().enumerate().filter(|(at, _)| truths[*at]) {
-            *seen |= eval_in(system, &Expr::Leaf(Leaf::Label(LabelId::from(at))), codes) != 0;
+            *seen |= here.leaf(Leaf::Label(LabelId::from(at))) != 0;
         }
-        if eval_in(system, &system.absorb, codes) == 0 {
-            clauses(system, &steps, state, codes, &mut findings);
-            findings.idle.retain(|&at| eval_in(system, &system.also[at].guard, codes) == 0);
+        if !here.holds(&system.absorb) {
+            clauses(&steps, state, &here, &mut findings);
+            findings.idle.retain(|&at| !here.holds(&system.also[at].guard));
         }
     }
     findings.unreachable = (0..seen.len()).filter(|&at| truths[at] && !seen[at]).map(LabelId::from).collect();
     Some(findings)
 }
 
-fn clauses(system: &System, steps: &Steps<'_>, state: StateIx, codes: &[i64], findings: &mut Findings) {
+fn clauses<'a>(steps: &Steps<'a>, state: StateIx, here: &Row<'a>, findings: &mut Findings) {
+    let system = here.system();
     let enabled: Vec<usize> = (0..system.clauses.len())
-        .filter(|&at| !system.clauses[at].generated && eval_in(system, &system.clauses[at].guard, codes) != 0)
+        .filter(|&at| !system.clauses[at].generated && here.holds(&system.clauses[at].guard))
         .collect();
     for (at, &first) in enabled.iter().enumerate() {
         for &second in &enabled[at + 1..] {
             let actions = &system.clauses[second].actions;
             let mut shared = system.clauses[first].actions.iter().filter(|a| actions.contains(a));
             let known = || findings.overlaps.iter().any(|o| (o.0, o.1) == (first, second));
-            if !known() && shared.any(|&action| differ(system, steps, [first, second], action, codes)) {
+            if !known() && shared.any(|&action| differ(steps, [first, second], action, here)) {
                 findings.overlaps.push((first, second, state));
             }
         }
-        if !findings.added.iter().any(|a| a.0 == first) && adds(system, first, codes) {
+        if !findings.added.iter().any(|a| a.0 == first) && adds(first, here) {
             findings.added.push((first, state));
         }
-        if !findings.lost.iter().any(|l| l.0 == first) && leaves_range(system, first, codes) {
+        if !findings.lost.iter().any(|l| l.0 == first) && leaves_range(first, here) {
             findings.lost.push((first, state));
         }
     }
 }
 
 /// Whether both clauses have outcomes by that action, and not the same.
-fn differ(system: &System, steps: &Steps<'_>, both: [usize; 2], action: ActionId, codes: &[i64]) -> bool {
+fn differ<'a>(steps: &Steps<'a>, both: [usize; 2], action: ActionId, here: &Row<'a>) -> bool {
+    let system = here.system();
     let also = applicable(system, action, &no_number);
-    let besides: Updates = applied(system, &also, codes).cloned().collect();
+    let besides: Updates = applied(&also, here).cloned().collect();
     let outcomes = |clause: usize| -> Option<Vec<Vec<i64>>> {
         let updates = system.clauses[clause].updates.iter().chain(&besides);
-        let mut all = steps.outcomes(updates, codes, OUTCOMES).ok()?;
-        let inside = |next: &Vec<i64>| {
+        let mut all = Rows::default();
+        steps.outcomes(updates, here, OUTCOMES, &mut all).ok()?;
+        let inside = |next: &&[i64]| {
             let fits =
                 |(value, var): (&i64, &Var)| bounds(&var.ty).is_none_or(|(lo, hi)| (lo..=hi).contains(value));
             next.iter().zip(&system.vars).all(fits)
         };
-        all.retain(inside);
+        let mut all: Vec<Vec<i64>> = all.iter().filter(inside).map(<[i64]>::to_vec).collect();
         all.sort_unstable();
         all.dedup();
         Some(all)
@@ -105,24 +110,26 @@ fn differ(system: &System, steps: &Steps<'_>, both: [usize; 2], action: ActionId
 }
 
 /// Whether a clause gives one of its actions another outcome than the map or graph does.
-fn adds(system: &System, clause: usize, codes: &[i64]) -> bool {
+fn adds(clause: usize, here: &Row<'_>) -> bool {
+    let system = here.system();
     let actions = &system.clauses[clause].actions;
     let moves = || {
         let moves = system.clauses.iter().enumerate().filter(|(_, c)| c.generated);
         moves
             .filter(|(_, c)| c.actions.iter().any(|a| actions.contains(a)))
-            .any(|(at, c)| eval_in(system, &c.guard, codes) != 0 && !leaves_range(system, at, codes))
+            .any(|(at, c)| here.holds(&c.guard) && !leaves_range(at, here))
     };
     let listed = system.edges.as_ref().is_some_and(|edges| {
-        let at = u32::try_from(codes[usize::from(edges.var)]).unwrap_or(u32::MAX);
+        let at = u32::try_from(here.leaf(Leaf::Var(edges.var))).unwrap_or(u32::MAX);
         edges.of(at).iter().any(|edge| actions.contains(&edge.action))
     });
     listed || moves()
 }
 
-fn leaves_range(system: &System, clause: usize, codes: &[i64]) -> bool {
+fn leaves_range(clause: usize, here: &Row<'_>) -> bool {
+    let system = here.system();
     system.clauses[clause].updates.iter().any(|(var, update)| {
         let Some((lo, hi)) = bounds(&system.vars[*var].ty) else { return false };
-        update_values_unclipped(system, update, codes).iter().any(|v| !(lo..=hi).contains(v))
+        update_values_unclipped(update, here).iter().any(|v| !(lo..=hi).contains(v))
     })
 }

@@ -8,7 +8,7 @@
 //! There is no formula here, no path variable but as a label of a trace, no term and no solver. Nothing depends on how
 //! states are going to be written.
 //!
-//! `eval` gives expressions their values; `also` says what transitions do besides, `step` where updates lead; `graph` and
+//! `eval` gives expressions their values, `row` what labels are in one state; `also` says what transitions do besides, `step` where updates lead; `graph` and
 //! `command` read them, `explore` fills graphs, `run` and `inspect` read those.
 
 mod also;
@@ -17,7 +17,9 @@ mod cost;
 mod eval;
 mod explore;
 mod graph;
+mod index;
 mod inspect;
+mod row;
 mod run;
 mod step;
 #[cfg(test)]
@@ -26,8 +28,8 @@ mod tests;
 pub use also::{Updates, besides, no_number};
 pub use command::{Command, Commands, Guard, Listed, MAX_COMMANDS, NewValue};
 pub use cost::step_costs;
-pub use eval::{bounds, code, decode, eval, eval_in, eval_trans, holds_in, is_step, value_in};
+pub use eval::{bounds, code, decode, eval, holds_in, is_step, value_in};
 pub use explore::Graphs;
-pub use graph::{Graph, LIVE, Letter, StateIx, TooLarge};
+pub use graph::{Graph, LIVE, Letter, StateIx, TooLarge, sources};
 pub use inspect::{Findings, inspect};
 pub use run::Run;

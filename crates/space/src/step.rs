@@ -1,7 +1,8 @@
 //! Where updates lead from a state: the values that they allow, of which `trans` may rule some out.
 
-use crate::eval::{bounds, eval_in, eval_trans};
+use crate::eval::{bounds, eval};
 use crate::graph::TooLarge;
+use crate::row::{Row, Rows};
 use hyperplan_problem::{Expr, LabelMemo, Leaf, System, TransLeaf, Update, VarId};
 use std::convert::Infallible;
 
@@ -26,92 +27,114 @@ impl<'a> Steps<'a> {
     /// out first, then each choice; a part of `trans` is tested as soon as what it reads is known.
     pub(crate) fn outcomes<'u>(
         &self,
-        updates: impl IntoIterator<Item = &'u (VarId, Update)>,
-        codes: &[i64],
+        updates: impl Iterator<Item = &'u (VarId, Update)> + Clone,
+        from: &Row<'a>,
         budget: usize,
-    ) -> Result<Vec<Vec<i64>>, TooLarge> {
-        let (plain, choices): (Vec<_>, Vec<_>) =
-            updates.into_iter().partition(|(_, update)| matches!(update, Update::Assign(_)));
-        let updates: Vec<&(VarId, Update)> = plain.into_iter().chain(choices).collect();
-        let tests = self.tests(&updates);
-        let holds = |next: &[i64], done: usize| {
-            let mut due = tests.iter().filter(|(after, _)| *after == done);
-            due.all(|(_, test)| eval_trans(self.system, test, codes, next) != 0)
-        };
-        let mut all = vec![codes.to_vec()];
-        all.retain(|next| holds(next, 0));
+        found: &mut Rows,
+    ) -> Result<(), TooLarge> {
+        let is_plain = |own: &&(VarId, Update)| matches!(own.1, Update::Assign(_));
+        let choices = updates.clone().filter(|own| !is_plain(own));
+        let updates = updates.filter(is_plain).chain(choices);
+        let mut tests = self.tests(updates.clone());
+        found.clear();
+        found.push(from.codes());
+        tests.retain(found, from, 0);
         for (done, (var, update)) in (1..).zip(updates) {
-            if all.is_empty() {
-                break;
-            }
-            let values = update_values(self.system, *var, update, codes, budget / all.len())?;
             let at = usize::from(*var);
-            if let [value] = values[..] {
-                all.iter_mut().for_each(|next| next[at] = value);
-                all.retain(|next| holds(next, done));
+            if let (Update::Assign(e), 1) = (update, found.len()) {
+                found.last_mut()[at] = from.eval(e);
+                tests.retain(found, from, done);
                 continue;
             }
-            let mut longer = Vec::with_capacity(all.len() * values.len());
-            for before in &all {
+            if found.len() == 0 {
+                break;
+            }
+            let values = update_values(from, *var, update, budget / found.len())?;
+            let before = std::mem::take(found);
+            for state in before.iter() {
                 for &value in &values {
-                    let mut next = before.clone();
-                    next[at] = value;
-                    if holds(&next, done) {
-                        longer.push(next);
+                    found.push(state);
+                    found.last_mut()[at] = value;
+                    if !tests.hold(found.last_mut(), from, done) {
+                        found.pop();
                     }
                 }
             }
-            all = longer;
         }
-        Ok(all)
+        Ok(())
     }
 
     /// The parts of `trans`, each with the number of updates after which it can be tested.
-    fn tests(&self, updates: &[&(VarId, Update)]) -> Vec<(usize, &'a Expr<TransLeaf>)> {
+    fn tests<'u>(&self, updates: impl Iterator<Item = &'u (VarId, Update)>) -> Tests<'a> {
         if self.parts.is_empty() {
-            return Vec::new();
+            return Tests { due: Vec::new(), to: None };
         }
         let mut place = vec![0; self.system.vars.len()];
-        for (at, (var, _)) in updates.iter().enumerate() {
+        for (at, (var, _)) in updates.enumerate() {
             place[usize::from(*var)] = at + 1;
         }
         let last = |vars: &[VarId]| vars.iter().map(|var| place[usize::from(*var)]).max().unwrap_or(0);
-        self.parts.iter().map(|(part, vars)| (last(vars), *part)).collect()
+        let due = self.parts.iter().map(|(part, vars)| (last(vars), *part)).collect();
+        Tests { due, to: Some(Row::new(self.system)) }
+    }
+}
+
+/// Parts of `trans` to be tested.
+struct Tests<'a> {
+    /// Each with the number of updates after which it can be.
+    due: Vec<(usize, &'a Expr<TransLeaf>)>,
+    /// The state after the step, where there are any.
+    to: Option<Row<'a>>,
+}
+
+impl<'a> Tests<'a> {
+    /// Whether those hold of a step that are due after so many updates.
+    fn hold(&mut self, next: &[i64], from: &Row<'a>, done: usize) -> bool {
+        let Some(to) = &mut self.to else { return true };
+        to.turn(next);
+        let mut due = self.due.iter().filter(|(after, _)| *after == done);
+        due.all(|(_, test)| {
+            let value = eval(test, &mut |leaf| match *leaf {
+                TransLeaf::Before(leaf) => from.leaf(leaf),
+                TransLeaf::After(leaf) => to.leaf(leaf),
+            });
+            value != 0
+        })
+    }
+
+    /// Keeps the only state if they hold.
+    fn retain(&mut self, only: &mut Rows, from: &Row<'a>, done: usize) {
+        if only.len() == 1 && !self.hold(only.last_mut(), from, done) {
+            only.clear();
+        }
     }
 }
 
 /// What applies of an update in a state.
-fn applied<'u>(system: &System, update: &'u Update, codes: &[i64]) -> &'u Update {
-    let Ok(update) =
-        update.in_state(&mut |condition| Ok::<_, Infallible>(eval_in(system, condition, codes) != 0));
+fn applied<'u>(update: &'u Update, from: &Row<'_>) -> &'u Update {
+    let Ok(update) = update.in_state(&mut |condition| Ok::<_, Infallible>(from.holds(condition)));
     update
 }
 
 /// The least and greatest values that an update gives, whatever the variable's type.
-pub(crate) fn update_values_unclipped(system: &System, update: &Update, codes: &[i64]) -> Vec<i64> {
-    match applied(system, update, codes) {
-        Update::Assign(e) => vec![eval_in(system, e, codes)],
-        Update::OneOf(es) => es.iter().map(|e| eval_in(system, e, codes)).collect(),
-        Update::Within(lo, hi) => vec![eval_in(system, lo, codes), eval_in(system, hi, codes)],
+pub(crate) fn update_values_unclipped(update: &Update, from: &Row<'_>) -> Vec<i64> {
+    match applied(update, from) {
+        Update::Assign(e) => vec![from.eval(e)],
+        Update::OneOf(es) => es.iter().map(|e| from.eval(e)).collect(),
+        Update::Within(lo, hi) => vec![from.eval(lo), from.eval(hi)],
         Update::If(..) => unreachable!("what applies in a state has no conditions"),
     }
 }
 
 /// The values that an update allows, no more than `most`; those outside the variable's type may be left out.
-fn update_values(
-    system: &System,
-    var: VarId,
-    update: &Update,
-    codes: &[i64],
-    most: usize,
-) -> Result<Vec<i64>, TooLarge> {
-    let update = applied(system, update, codes);
+fn update_values(from: &Row<'_>, var: VarId, update: &Update, most: usize) -> Result<Vec<i64>, TooLarge> {
+    let update = applied(update, from);
     let (lo, hi) = match update {
         Update::Assign(_) | Update::If(..) => (0, 0),
         Update::OneOf(es) => (1, es.len() as i64),
         Update::Within(lo, hi) => {
-            let (least, greatest) = bounds(&system.vars[var].ty).ok_or(TooLarge)?;
-            (eval_in(system, lo, codes).max(least), eval_in(system, hi, codes).min(greatest))
+            let (least, greatest) = bounds(&from.system().vars[var].ty).ok_or(TooLarge)?;
+            (from.eval(lo).max(least), from.eval(hi).min(greatest))
         }
     };
     // Ranges may have more values than there is memory.
@@ -120,7 +143,7 @@ fn update_values(
     }
     Ok(match update {
         Update::Within(..) => (lo..=hi).collect(),
-        _ => update_values_unclipped(system, update, codes),
+        _ => update_values_unclipped(update, from),
     })
 }
 

@@ -25,8 +25,15 @@ pub(crate) fn eval<L>(expr: &Expr<L>, leaf: &impl Fn(&L) -> Option<Value>) -> Op
         Expr::Mod(a, c) => int(a, leaf)?.checked_rem_euclid(*c).map(Value::Int),
         Expr::If(branches, last) => chain(branches, last, leaf),
         Expr::Member(es, set) => {
-            let tuple = es.iter().map(|e| member(e, leaf)).collect::<Option<Vec<i64>>>()?;
-            Some(Value::Bool(set.contains(&tuple)))
+            let mut short = [0; 4];
+            let Some(tuple) = short.get_mut(..es.len()) else {
+                let tuple = es.iter().map(|e| member(e, leaf)).collect::<Option<Vec<i64>>>()?;
+                return Some(Value::Bool(set.contains(&tuple)));
+            };
+            for (value, e) in tuple.iter_mut().zip(es) {
+                *value = member(e, leaf)?;
+            }
+            Some(Value::Bool(set.contains(tuple)))
         }
     }
 }

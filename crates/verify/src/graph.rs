@@ -323,6 +323,12 @@ impl<'p> Graph<'p> {
             if !self.holds(state, &clause.guard)? {
                 continue;
             }
+            if system.also.is_empty()
+                && let Some(target) = self.certain(state, &clause.updates)?
+            {
+                found.extend(target.map(|target| (clause.actions.as_slice(), target)));
+                continue;
+            }
             let own = self.each(&clause.updates, &|e| self.value(state, e))?;
             if system.also.is_empty() {
                 let targets = self.chosen(state, own)?;
@@ -346,6 +352,24 @@ impl<'p> Graph<'p> {
             found.extend(targets.into_iter().map(|target| (std::slice::from_ref(&own.action), target)));
         }
         Ok(found)
+    }
+
+    /// Where updates lead that leave no choice, if anywhere; `None` where one may leave a choice.
+    fn certain(
+        &self,
+        state: StateId,
+        updates: &[(VarId, Update)],
+    ) -> Result<Option<Option<Vec<Value>>>, Stop> {
+        let mut target = self.nodes[state].values.to_vec();
+        let mut fits = true;
+        for (var, update) in updates {
+            let Update::Assign(e) = update else { return Ok(None) };
+            let value = self.value(state, e)?;
+            let ty = &self.system.vars.get(*var).ok_or_else(|| no_value(self.system))?.ty;
+            fits &= ty.contains(value);
+            target[usize::from(*var)] = value;
+        }
+        Ok(Some(fits.then_some(target)))
     }
 
     /// What each of some updates allows.

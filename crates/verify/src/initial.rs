@@ -27,7 +27,8 @@ impl Graph<'_> {
             domains.push(domain);
         }
         let mut states = Vec::new();
-        if self.init_so_far(&[]) == Some(false) {
+        let labels = self.labels_of_init();
+        if self.init_so_far(&[], labels) == Some(false) {
             return Ok(states);
         }
         let mut partial: Vec<Value> = Vec::with_capacity(domains.len());
@@ -55,7 +56,7 @@ impl Graph<'_> {
                 }
                 Some(Some(value)) => {
                     partial.push(value);
-                    match self.init_so_far(&partial) {
+                    match self.init_so_far(&partial, labels) {
                         Some(false) => {
                             partial.pop();
                         }
@@ -68,17 +69,29 @@ impl Graph<'_> {
         Ok(states)
     }
 
-    /// Whether `init` holds, as far as the first variables tell.
-    fn init_so_far(&self, partial: &[Value]) -> Option<bool> {
+    /// How many labels `init` may read: one reads only labels before it.
+    fn labels_of_init(&self) -> usize {
+        let mut labels = 0;
+        self.system.init.for_each_leaf(&mut |leaf| {
+            if let Leaf::Label(label) = leaf {
+                labels = labels.max(usize::from(*label) + 1);
+            }
+        });
+        labels
+    }
+
+    /// Whether `init`, which reads the first `labels` labels at most, holds as far as the first variables tell.
+    fn init_so_far(&self, partial: &[Value], labels: usize) -> Option<bool> {
         if self.system.init.is_true() {
             return Some(true);
         }
-        let mut labels: TiVec<LabelId, Option<Value>> = TiVec::with_capacity(self.system.labels.len());
+        let read = self.system.labels.iter().take(labels);
+        let mut labels: TiVec<LabelId, Option<Value>> = TiVec::with_capacity(labels);
         let leaf = |labels: &TiVec<LabelId, Option<Value>>, l: &Leaf| match l {
             Leaf::Var(v) => partial.get(usize::from(*v)).copied(),
             Leaf::Label(l) => labels.get(*l).copied().flatten(),
         };
-        for label in &self.system.labels {
+        for label in read {
             let value = eval(&label.expr, &|l| leaf(&labels, l));
             labels.push(value);
         }

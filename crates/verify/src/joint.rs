@@ -39,6 +39,9 @@ pub(crate) struct Joint {
     pub(crate) paths: Vec<(PathId, SystemId)>,
     states: TiVec<JointId, Rc<[StateId]>>,
     state_index: FxHashMap<Rc<[StateId]>, JointId>,
+    /// Of a single path, the joint state of each state, and the deed of each action, instead.
+    of_state: TiVec<StateId, Option<JointId>>,
+    of_action: TiVec<ActionId, Option<DeedId>>,
     moves: TiVec<JointId, Option<Rc<[JointMove]>>>,
     deeds: TiVec<DeedId, Deed>,
     deed_index: FxHashMap<Deed, DeedId>,
@@ -62,6 +65,8 @@ impl Joint {
             // The start has no states; its entry keeps ids and indices in step.
             states: TiVec::from(vec![Rc::from([])]),
             state_index: FxHashMap::default(),
+            of_state: TiVec::new(),
+            of_action: TiVec::new(),
             moves: TiVec::from(vec![None]),
             deeds: TiVec::new(),
             deed_index: FxHashMap::default(),
@@ -159,26 +164,56 @@ impl Joint {
     }
 
     fn intern(&mut self, states: &[StateId]) -> Result<JointId, Stop> {
-        if let Some(&id) = self.state_index.get(states) {
+        let known = match *states {
+            [only] => self.of_state.get(only).copied().flatten(),
+            _ => self.state_index.get(states).copied(),
+        };
+        if let Some(id) = known {
             return Ok(id);
         }
         if self.states.len() > self.limit {
             return Err(Stop::Budget);
         }
-        let states: Rc<[StateId]> = states.into();
-        let id = self.states.push_and_get_key(states.clone());
+        let shared: Rc<[StateId]> = states.into();
+        let id = self.states.push_and_get_key(shared.clone());
         self.moves.push(None);
-        self.state_index.insert(states, id);
+        match *states {
+            [only] => note(&mut self.of_state, only, id),
+            _ => {
+                self.state_index.insert(shared, id);
+            }
+        }
         Ok(id)
     }
 
     fn intern_deed(&mut self, actions: &[Option<ActionId>]) -> DeedId {
-        if let Some(&id) = self.deed_index.get(actions) {
+        let known = match *actions {
+            [Some(only)] => self.of_action.get(only).copied().flatten(),
+            _ => self.deed_index.get(actions).copied(),
+        };
+        if let Some(id) = known {
             return id;
         }
-        let actions: Deed = actions.into();
-        let id = self.deeds.push_and_get_key(actions.clone());
-        self.deed_index.insert(actions, id);
+        let shared: Deed = actions.into();
+        let id = self.deeds.push_and_get_key(shared.clone());
+        match *actions {
+            [Some(only)] => note(&mut self.of_action, only, id),
+            _ => {
+                self.deed_index.insert(shared, id);
+            }
+        }
         id
     }
+}
+
+/// Notes what belongs to a key.
+fn note<K, V: Clone>(known: &mut TiVec<K, Option<V>>, key: K, value: V)
+where
+    usize: From<K>,
+{
+    let at = usize::from(key);
+    if known.len() <= at {
+        known.raw.resize(at + 1, None);
+    }
+    known.raw[at] = Some(value);
 }

@@ -51,33 +51,45 @@ impl Search<'_> {
         if let Some(known) = look(self).and_then(|look| self.recent.get(look)) {
             return Ok(Some(known));
         }
-        if !self.place(level, mv)? {
-            return Ok(None);
-        }
+        self.place(level, mv)?;
         let valuation = self.valuation(level, mv, base);
         let value = self.advance(level + 1, inner, valuation)?;
+        // What decides nothing need not be a path.
+        if value == ValueId::of(!self.levels[level].decisive) {
+            return Ok(Some(value));
+        }
+        if !self.goes_on(level, mv)? {
+            return Ok(None);
+        }
         if let Some(look) = look(self) {
             self.recent.put(look, value);
         }
         Ok(Some(value))
     }
 
-    /// Makes a move, unless it leads to no path.
-    fn place(&mut self, level: usize, mv: JointMove) -> Result<bool, Stop> {
-        for at in 0..self.levels[level].joint.paths.len() {
-            let Level { joint, reads_enabled, .. } = &self.levels[level];
-            let (path, system) = joint.paths[at];
+    /// Makes a move.
+    fn place(&mut self, level: usize, mv: JointMove) -> Result<(), Stop> {
+        let Level { joint, reads_enabled, .. } = &self.levels[level];
+        for (at, &(path, system)) in joint.paths.iter().enumerate() {
             let (state, action) = (joint.states(mv.to)[at], joint.deed(mv.deed)[at]);
-            let ahead = self.ahead(path);
-            let graph = &mut self.graphs[system];
-            if !graph.can_go(state, ahead)? {
-                return Ok(false);
-            }
             if *reads_enabled {
-                graph.moves(state)?;
+                self.graphs[system].moves(state)?;
             }
             self.states[path] = Some(state);
             self.took[path] = action;
+        }
+        Ok(())
+    }
+
+    /// Whether what a move leads to can go on far enough to be part of a path.
+    fn goes_on(&mut self, level: usize, mv: JointMove) -> Result<bool, Stop> {
+        for at in 0..self.levels[level].joint.paths.len() {
+            let joint = &self.levels[level].joint;
+            let ((path, system), state) = (joint.paths[at], joint.states(mv.to)[at]);
+            let ahead = self.ahead(path);
+            if !self.graphs[system].can_go(state, ahead)? {
+                return Ok(false);
+            }
         }
         let Level { viable, joint, .. } = &mut self.levels[level];
         viable.resize(joint.len(), false);

@@ -7,7 +7,7 @@ use crate::writing::{Env, at};
 use hyperplan_problem::{ActionId, Expr, Leaf, PathId, PathLeaf, System, Type};
 use hyperplan_relevance::{Task, only_path};
 use hyperplan_smt::{Term, Terms};
-use hyperplan_space::{Graph, StateIx, eval_in};
+use hyperplan_space::{Graph, StateIx};
 
 /// The leaves of atoms where one path is on a given step of a run, the others as terms.
 pub(super) struct OnRun<'b, 'e, 'a> {
@@ -52,11 +52,7 @@ impl Leaves<PathLeaf> for OnRun<'_, '_, '_> {
         match *leaf {
             PathLeaf::State(p, state_leaf) if p == self.path || unread => {
                 let system = self.task.system(p);
-                let value = if unread {
-                    0
-                } else {
-                    eval_in(system, &Expr::Leaf(state_leaf), self.graph.codes(self.state))
-                };
+                let value = if unread { 0 } else { self.graph.leaf(system, self.state, state_leaf) };
                 if is_truth(system, state_leaf) { truth(value != 0) } else { constant(value) }
             }
             _ if unread => truth(false),

@@ -14,7 +14,7 @@ use super::product::Product;
 use super::question::Place;
 use crate::residual::{FALSE, Residual, Residuals};
 use hyperplan_problem::Mode;
-use hyperplan_space::{Graph, LIVE, StateIx};
+use hyperplan_space::{Graph, LIVE, StateIx, sources};
 use rustc_hash::FxHashMap;
 
 /// Relaxed residuals beyond which there is no bound.
@@ -168,14 +168,7 @@ impl Search<'_> {
         let arrived: Vec<[bool; 2]> = (self.bound.residuals.iter())
             .map(|&r| [residuals.owes_nothing(r), residuals.can_hold(r)])
             .collect();
-        self.edges.sort_unstable_by_key(|edge| edge.1);
-        let mut starts = vec![0u32; self.nodes.len() + 1];
-        for edge in &self.edges {
-            starts[edge.1 as usize + 1] += 1;
-        }
-        for at in 0..self.nodes.len() {
-            starts[at + 1] += starts[at];
-        }
+        let (starts, sources) = sources(self.nodes.len(), self.edges.iter().copied());
         for which in 0..2 {
             let mut queue: Vec<u32> = Vec::new();
             for (at, &(row, state)) in self.nodes.iter().enumerate() {
@@ -188,11 +181,11 @@ impl Search<'_> {
                 let to = queue[next] as usize;
                 next += 1;
                 let steps = self.steps(to, which) + 1;
-                for edge in &self.edges[starts[to] as usize..starts[to + 1] as usize] {
-                    if self.steps(edge.0 as usize, which) == NEVER {
-                        let (row, state) = self.nodes[edge.0 as usize];
+                for &from in &sources[starts[to] as usize..starts[to + 1] as usize] {
+                    if self.steps(from as usize, which) == NEVER {
+                        let (row, state) = self.nodes[from as usize];
                         self.bound.steps[row][state as usize][which] = steps;
-                        queue.push(edge.0);
+                        queue.push(from);
                     }
                 }
             }
