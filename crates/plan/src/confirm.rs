@@ -1,7 +1,7 @@
 //! A witness is checked independently, or, where that is too much to enumerate, by a second query.
 
 use crate::cegis::{Assignment, Cegis};
-use crate::config::{Config, Verified};
+use crate::config::{Config, Quantifiers, Verified};
 use crate::fact::{Error, Reason};
 use crate::oracle::{Account, Oracle, Stop};
 use crate::prepare::is_existential;
@@ -10,12 +10,13 @@ use hyperplan_problem::Strategy;
 use hyperplan_solver::Spec;
 use hyperplan_verify as verify;
 
-/// How a witness was checked that came of what was asked. It is undecided where nobody could check it.
+/// How a witness was checked that came of what was asked; `by` says how quantifiers were decided. It is undecided where
+/// nobody could check it.
 pub(crate) fn confirm(
     encoder: &Encoder<'_>,
     config: &Config,
     strategy: &Strategy,
-    account: &Account,
+    (account, by): (&Account, Quantifiers),
 ) -> Result<Verified, Stop> {
     let (problem, objective) = (encoder.problem, encoder.objective);
     let verdict = match verify::check(problem, objective, strategy, &verify::Budget::default()) {
@@ -36,6 +37,10 @@ pub(crate) fn confirm(
         // There is nothing that a second query could ask.
         verify::Check::TooLarge { .. } if objective.blocks().len() < 2 => {
             Err(Stop::Unknown(Reason::TooManySteps))
+        }
+        // A search by counterexamples ends with the second query, of these very paths.
+        verify::Check::TooLarge { .. } if by == Quantifiers::Cegis && config.solver.is_embedded() => {
+            Ok(Verified::BySolver)
         }
         verify::Check::TooLarge { .. } => match defeated(encoder, config, strategy)? {
             false => Ok(Verified::BySolver),

@@ -1,13 +1,15 @@
 //! The least value of a constant for which an objective is realizable.
 //!
 //! Values are taken upwards, and every smaller value of the range is proved unrealizable before one is called the least.
-//! Only three things make that faster than asking one after the other, and all are proofs:
+//! Four things make that faster than asking one after the other:
 //!
 //! - *More does not hurt*: where the whole objective lasts ([`crate::lasting`]) from each value to the next, one that
 //!   is unrealizable for a value is so for all smaller ones. Then values are tried at growing distances, and the gap
 //!   is bisected.
 //! - *Parts that last*: of other objectives those conjuncts are taken that last. If these alone are hopeless for a
 //!   value, so is the objective for all smaller ones.
+//! - *Where a plan is done*: with the largest value of a range that is not wide, a plan comes early to where it stays. What
+//!   is left of its horizon is a guess of how much less would do, and is tried first; that is no proof, and needs none.
 //! - *Hopeless* is what the states that can matter show without any solver: for some path of the leading block
 //!   there are none, say since the goal is too far away.
 //!
@@ -20,13 +22,17 @@ use crate::lasting::{conjuncts, lasting};
 use crate::prepare::is_existential;
 use crate::solve::solve_sharing;
 use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Narrowing};
-use hyperplan_problem::{FormulaId, Node, Objective, Problem};
+use hyperplan_problem::{FormulaId, Node, Objective, Problem, Trace};
 use hyperplan_solver::{QuerySize, Unknown};
 use std::ops::RangeInclusive;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// What part of the time that is left a value may take, where larger ones can still be asked: one in so many.
 const SHARE: u32 = 4;
+
+/// Values of a range whose last is asked for a guess, and the time for that.
+const NEAR: i64 = 256;
+const GUESS: Duration = Duration::from_secs(1);
 
 /// What is known of the least value.
 #[derive(Debug)]
@@ -81,8 +87,14 @@ pub fn minimize<E>(
     let graphs = Graphs::default();
     let mut minimizer =
         Minimizer { objective, problem_of, config, graphs, chain, low, high, spent: Spent::default() };
-    minimizer.refute()?;
-    minimizer.run()
+    let mut last = minimizer.last()?;
+    if let Some(none) = last.take_if(|last| last.outcome.verdict == Verdict::Unrealizable) {
+        minimizer.low = high;
+        return Ok(minimizer.conclude(none, None));
+    }
+    let guess = last.as_ref().and_then(saved);
+    minimizer.refute(guess.map(|saved| high - saved))?;
+    minimizer.run(last)
 }
 
 fn find<'p, E>(problem: &'p Problem, name: &str, value: i64) -> Result<&'p Objective, MinimizeError<E>> {
@@ -192,10 +204,31 @@ impl<E> Minimizer<'_, E> {
         }
     }
 
-    /// Raises `low` past values for which the parts that last are hopeless.
-    fn refute(&mut self) -> Result<(), MinimizeError<E>> {
+    /// The answer for the last value of a range that is not wide, if more does not hurt and it is soon found.
+    fn last(&mut self) -> Result<Option<Solved>, MinimizeError<E>> {
+        if self.high == self.low || self.high - self.low > NEAR {
+            return Ok(None);
+        }
+        self.follow(self.high);
+        if !self.chain.whole {
+            return Ok(None);
+        }
+        let problem = self.problem(self.high)?;
+        let left = self.config.deadline.remaining().map_or(GUESS, |left| GUESS.min(left / SHARE));
+        let solved = self.solve(self.high, problem, Some(left))?;
+        Ok(Some(solved).filter(|solved| solved.outcome.verdict != Verdict::Unknown))
+    }
+
+    /// Raises `low` past values for which the parts that last are hopeless. A guess of the least of the others is tried
+    /// first.
+    fn refute(&mut self, guess: Option<i64>) -> Result<(), MinimizeError<E>> {
         let mut steps = Steps::default();
-        while let Some(value) = steps.next(self.low, self.high) {
+        let mut first: Vec<i64> = guess.into_iter().flat_map(|guess| [guess, guess - 1]).collect();
+        first.retain(|value| (self.low..=self.high).contains(value));
+        while let Some(value) = first.pop().or_else(|| steps.next(self.low, self.high)) {
+            if steps.bound.is_some_and(|bound| bound <= value) {
+                continue;
+            }
             self.follow(value);
             if self.chain.parts.is_empty() {
                 break;
@@ -226,7 +259,8 @@ impl<E> Minimizer<'_, E> {
         hopeless.unwrap_or(false)
     }
 
-    fn run(mut self) -> Result<Least, MinimizeError<E>> {
+    /// Asks for values from `low` up; the last may have been answered before.
+    fn run(mut self, mut last: Option<Solved>) -> Result<Least, MinimizeError<E>> {
         let mut best: Option<Solved> = None;
         let mut steps = Steps::default();
         // Smaller values are settled, or took too long.
@@ -242,6 +276,11 @@ impl<E> Minimizer<'_, E> {
                 self.follow(far);
             }
             let value = if self.chain.whole { far } else { self.low };
+            if let Some(known) = last.take_if(|last| last.value == value || steps.distance > 0) {
+                steps.bound = Some(known.value);
+                best = Some(known);
+                continue;
+            }
             let problem = self.problem(value)?;
             // Where the objective lasts, `refute` has asked this.
             if !self.chain.whole && value < self.high {
@@ -253,7 +292,8 @@ impl<E> Minimizer<'_, E> {
             }
             // Where more does not hurt, the rest of the time is for larger values: some strategy is better than none.
             let patient = !self.chain.whole || value == self.high;
-            let solved = self.solve(value, problem, if patient { 1 } else { SHARE })?;
+            let share = self.config.deadline.remaining().filter(|_| !patient).map(|left| left / SHARE);
+            let solved = self.solve(value, problem, share)?;
             match solved.outcome.verdict {
                 Verdict::Realizable => {
                     steps.bound = Some(value);
@@ -281,12 +321,17 @@ impl<E> Minimizer<'_, E> {
         }
     }
 
-    /// The answer for a value, within a share of the time that is left, if that is limited.
-    fn solve(&mut self, value: i64, problem: Problem, share: u32) -> Result<Solved, MinimizeError<E>> {
+    /// The answer for a value, within so much time, if that is limited.
+    fn solve(
+        &mut self,
+        value: i64,
+        problem: Problem,
+        limit: Option<Duration>,
+    ) -> Result<Solved, MinimizeError<E>> {
         let objective = find(&problem, self.objective, value)?;
         let mut config = self.config.clone();
-        if let Some(left) = config.deadline.remaining().filter(|_| share > 1) {
-            config.deadline = config.deadline.within(left / share);
+        if let Some(limit) = limit {
+            config.deadline = config.deadline.within(limit);
         }
         let outcome = solve_sharing(&problem, objective, &config, &self.graphs)
             .map_err(|error| MinimizeError::Solve { value, error })?;
@@ -299,6 +344,16 @@ impl<E> Minimizer<'_, E> {
         let outcome = self.spent.told(outcome);
         Least { value, problem, outcome, proved: self.low, undecided }
     }
+}
+
+/// The steps of its horizon in which no path of a strategy moves any more.
+fn saved(solved: &Solved) -> Option<i64> {
+    let traces = &solved.outcome.witness.as_ref()?.traces;
+    let idle = |trace: &Trace| {
+        trace.states.iter().rev().zip(trace.states.iter().rev().skip(1)).take_while(|(a, b)| a == b).count()
+    };
+    let saved = traces.iter().map(idle).min()?;
+    i64::try_from(saved).ok()
 }
 
 /// Whether nothing can matter of some path of a leading block of existential paths. That counts only where every

@@ -122,7 +122,7 @@ fn concluded(
     let witness = found.map(|known| strategy(encoder, &known));
     if let Some(strategy) = witness.as_ref().filter(|_| config.verify) {
         let start = Instant::now();
-        let verified = confirm(encoder, config, strategy, account);
+        let verified = confirm(encoder, config, strategy, (account, outcome.quantifiers));
         outcome.seconds.verify = start.elapsed().as_secs_f64();
         match verified {
             Ok(verified) => outcome.verified = Some(verified),

@@ -181,12 +181,21 @@ impl Comparison {
 
 /// The tuples of a set such as `{(0, 0), (3, 4)}`; a map's obstacles and cells are such sets. An enumeration value
 /// stands in it by its position.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default)]
 pub struct TupleSet {
     /// All tuples, sorted, without repetition, of equal length.
     pub tuples: Vec<Box<[i64]>>,
     index: FxHashSet<Box<[i64]>>,
 }
+
+/// The index says the same once more.
+impl PartialEq for TupleSet {
+    fn eq(&self, other: &Self) -> bool {
+        self.tuples == other.tuples
+    }
+}
+
+impl Eq for TupleSet {}
 
 impl TupleSet {
     /// The set of these tuples.

@@ -130,33 +130,31 @@ fn narrowed<const N: usize>(
         .map(|at| alone(at, None).map(|Explored { layers: [layers], .. }| layers))
         .collect::<Result<_, _>>()?;
     let (own, rest, against) = (question(&own, None), question(&rest, None), question(&other, None));
-    let among = |wish, slack| -> Result<(Option<Chances<'_, N>>, bool), Error> {
-        let (mut layers, mut lossy) = (others.clone(), false);
-        for at in 0..leading {
-            let Explored { layers: [found], lossy: some } = alone(at, slack)?;
-            lossy |= some;
-            layers.insert(at, found);
-        }
+    let leads = |slack| (0..leading).map(|at| alone(at, slack)).collect::<Result<Vec<_>, Error>>();
+    let among = |wish, leads: &[Explored<1>]| {
+        let leads = leads.iter().map(|Explored { layers: [layers], .. }| layers);
         let rest = if wish == Wish::Leading { &rest } else { &against };
-        Ok((Chances::new(&own, (wish, rest), leading, layers), lossy))
+        Chances::new(&own, (wish, rest), leading, leads.chain(&others).cloned().collect())
     };
-    let (Some(mut answers), _) = among(Wish::Other, None)? else { return Ok(Belief::Unfit) };
+    let any = leads(None)?;
+    let Some(mut answers) = among(Wish::Other, &any) else { return Ok(Belief::Unfit) };
     if response::is_won(&mut answers, budget / 4)? {
         return Ok(Belief::Hopeless);
     }
     drop(answers);
     // Where there are many strategies, one of the most promising is among them.
-    let (Some(mut all), _) = among(Wish::Leading, None)? else { return Ok(Belief::Unfit) };
+    let Some(mut all) = among(Wish::Leading, &any) else { return Ok(Belief::Unfit) };
     for width in WIDTHS {
         let answer = beam::search(&mut all, width, budget)?;
         if !matches!(answer, Belief::Open) {
             return Ok(answer);
         }
     }
-    let (Some(mut few), lossy) = among(Wish::Leading, Some(SLACK))? else { return Ok(Belief::Unfit) };
+    let soon = leads(Some(SLACK))?;
+    let Some(mut few) = among(Wish::Leading, &soon) else { return Ok(Belief::Unfit) };
     let answer = Search::new(&mut few, budget).run()?;
     // What is too much among few runs is too much among all.
-    if !matches!(answer, Belief::Hopeless) || !lossy {
+    if !matches!(answer, Belief::Hopeless) || !soon.iter().any(|explored| explored.lossy) {
         return Ok(answer);
     }
     let budget = all.work.saturating_add(budget);
