@@ -13,11 +13,11 @@ import sys
 import tempfile
 from collections.abc import Callable
 
-from bench import backends, compare, costs, machine, maps, run, scattered, targets
+from bench import backends, compare, costs, explicit, given, machine, maps, run, scattered, targets
 from bench.context import Context
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-SECTIONS = ("targets", "large", "growth", "scattered", "least", "quantifiers", "external", "backends", "command", "builds", "profile")
+SECTIONS = ("targets", "large", "growth", "explicit", "scattered", "given", "least", "quantifiers", "external", "backends", "command", "builds", "profile")
 NOT_BY_DEFAULT = ("builds", "profile")
 
 
@@ -62,6 +62,7 @@ def parsed() -> argparse.Namespace:
         metavar="FILE.map",
         help="a real map of 512 x 512 cells, in the format of the Moving AI Lab (default: $HYPERPLAN_MAP)",
     )
+    add("--problems", type=pathlib.Path, metavar="DIR", help="a folder of problem files to be solved, too")
     add("--out", type=pathlib.Path, default=ROOT / "docs" / "performance.md", metavar="FILE.md")
     add(
         "--only",
@@ -122,6 +123,7 @@ def prepared(arguments: argparse.Namespace, folder: pathlib.Path) -> Context:
         runs=arguments.runs,
         timeout=arguments.timeout,
         map=arguments.map,
+        problems=arguments.problems,
         floor=run.floor(),
     )
 
@@ -149,7 +151,9 @@ def measure(name: str, context: Context, picture: pathlib.Path) -> None:
     sections = {
         "targets": targets.targets,
         "large": targets.large,
+        "explicit": explicit.explicit,
         "scattered": scattered.scattered,
+        "given": given.given,
         "least": compare.least,
         "quantifiers": compare.quantifiers,
         "external": compare.external,

@@ -24,6 +24,7 @@ class Context:
     runs: int
     timeout: float
     map: pathlib.Path | None
+    problems: pathlib.Path | None
     # Less memory than this cannot be seen.
     floor: int
     # The text of each section, rewritten as it grows.

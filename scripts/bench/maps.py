@@ -81,6 +81,11 @@ def case_study(objective: str, size: int, folder: pathlib.Path) -> pathlib.Path:
     return file
 
 
+def map_file(objective: str, size: int, folder: pathlib.Path) -> pathlib.Path:
+    """The map of a case study, whose problem file was made in the folder if it is not committed."""
+    return (SPECS / "maps" if size in COMMITTED else folder) / f"{objective}-{size}.map.txt"
+
+
 def differences() -> list[str]:
     """Committed maps that their rule does not give."""
     wrong = []

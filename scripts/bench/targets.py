@@ -131,7 +131,6 @@ def fit(points: list[tuple[int, float, float]]) -> str:
 
 def work(context: Context, objective: str, size: int) -> int:
     """Cells that are no obstacles, times the horizon."""
-    file = maps.case_study(objective, size, context.folder)
-    folder = file.parent / "maps" if size in maps.COMMITTED else file.parent
-    text = (folder / f"{objective}-{size}.map.txt").read_text(encoding="utf-8")
+    maps.case_study(objective, size, context.folder)
+    text = maps.map_file(objective, size, context.folder).read_text(encoding="utf-8")
     return sum(text.count(letter) for letter in ".SG") * 2 * size

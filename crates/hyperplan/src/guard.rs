@@ -6,6 +6,7 @@
 
 use crate::failure::Exit;
 use crate::signals;
+use hyperplan_plan::Watch;
 use hyperplan_solver::Deadline;
 use memory_stats::memory_stats;
 use std::io::{self, Write as _};
@@ -27,6 +28,14 @@ const LEAST_EXCESS: u64 = 24 << 20;
 
 /// What the command is doing, for the message.
 static DOING: Mutex<&str> = Mutex::new("reading the problem");
+
+/// Where the search tells how far it is, for the message.
+static WATCH: Mutex<Option<Watch>> = Mutex::new(None);
+
+/// Tells of which search the message should say how far it was.
+pub(crate) fn watching(watch: &Watch) {
+    *WATCH.lock().unwrap_or_else(PoisonError::into_inner) = Some(watch.clone());
+}
 
 /// Tells what the command is about to do, as it goes on "while ...".
 pub(crate) fn doing(what: &'static str) {
@@ -86,8 +95,10 @@ impl Guard {
 
     fn end(&self) -> ! {
         let doing = *DOING.lock().unwrap_or_else(PoisonError::into_inner);
+        let far = WATCH.lock().unwrap_or_else(PoisonError::into_inner).as_ref().map(Watch::standing);
+        let far = far.map(|standing| format!("; it was {standing}")).unwrap_or_default();
         // There is nothing left to do if it cannot be written.
-        let _ = writeln!(io::stderr(), "error: stopped while {doing} ({})", self.deadline.reason());
+        let _ = writeln!(io::stderr(), "error: stopped while {doing} ({}){far}", self.deadline.reason());
         process::exit(signals::number().unwrap_or(Exit::Undecided as i32));
     }
 }

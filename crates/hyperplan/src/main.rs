@@ -20,6 +20,7 @@ mod report;
 mod signals;
 mod store;
 mod trusted;
+mod waiting;
 mod wish;
 
 use clap::Parser as _;

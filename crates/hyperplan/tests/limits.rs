@@ -141,3 +141,16 @@ fn signals_end_every_command_with_their_status() {
         }
     }
 }
+
+#[test]
+fn a_long_search_says_how_far_it_is() {
+    let (_folder, files) = giants();
+    let nested = text(&files[2]);
+    let (code, _, said) = end(start(&["solve", nested, "-v", "--timeout", "3"]), "solve");
+    assert_eq!(code, Some(3), "{said}");
+    for words in ["after 1 s: ", "after 2 s: "] {
+        assert!(said.contains(words), "{said}");
+    }
+    let (code, _, said) = end(start(&["solve", nested, "--quiet", "--timeout", "2"]), "solve");
+    assert_eq!((code, said.contains("after")), (Some(3), false), "{said}");
+}

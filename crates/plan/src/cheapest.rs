@@ -136,6 +136,10 @@ impl Search<'_> {
                 true => steps.next(least[at], i64::MAX).unwrap_or(least[at]),
                 false => least[at].saturating_add(steps.distance).min(best.values[at] - 1),
             };
+            self.config.watch.tell(|standing| {
+                (standing.least, standing.value) = (Some(least[at]), Some(bound));
+                standing.best = Some(best.values[at]);
+            });
             let outcome = self.below(at, bound, best)?;
             self.spent.add(&outcome);
             match (outcome.verdict, outcome.witness) {

@@ -1,6 +1,7 @@
 //! What is asked for, and what comes out.
 
 use crate::fact::{Because, Note, Reason};
+use crate::watch::Watch;
 use hyperplan_encode::Limits;
 pub use hyperplan_problem::answer::{Quantifiers, States, Verdict, Verified};
 use hyperplan_problem::{PathId, Strategy, Target};
@@ -35,6 +36,8 @@ pub struct Config {
     pub limits: Limits,
     /// What targets over costs of the leading block may come to; for systems whose states are written one by one.
     pub bounds: Vec<(Target, i64)>,
+    /// Where it is told how far the search is.
+    pub watch: Watch,
 }
 
 impl Config {
@@ -54,6 +57,7 @@ impl Config {
             queries: None,
             limits: Limits::default(),
             bounds: Vec::new(),
+            watch: Watch::default(),
         }
     }
 }

@@ -6,6 +6,7 @@ use crate::direct::{self, Direct};
 use crate::fact::{Because, Error, Fault, Reason, Unsupported};
 use crate::oracle::{Oracle, Stop};
 use crate::prepare::is_existential;
+use crate::watch::Stage;
 use hyperplan_encode::{Belief, Encoder, Goal, Narrowing};
 use hyperplan_problem::PathId;
 use hyperplan_solver::Spec;
@@ -112,6 +113,7 @@ impl<'s, 'a> Search<'s, 'a> {
             };
         }
         for narrowing in self.narrowings() {
+            self.config.watch.stage(Stage::Preparing);
             // What depends on little is found soonest without any query, but for what one run decides.
             if self.turns == 0
                 && !narrowing.one_run
@@ -210,6 +212,7 @@ impl<'s, 'a> Search<'s, 'a> {
     /// What a search without queries finds of two blocks.
     fn explicit(&self, budget: usize) -> Result<Belief<Assignment>, Stop> {
         let [leading, _] = self.blocks.as_slice() else { return Ok(Belief::Unfit) };
+        self.config.watch.stage(Stage::Playing { chances: budget });
         let goal = Goal::new(&self.encoder.objective.formula, self.want);
         let assigned = |known| {
             let mut found: Assignment = vec![None; self.encoder.objective.paths.len()];

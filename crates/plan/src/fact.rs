@@ -2,6 +2,7 @@
 //! where these are shown; advice about flags is the caller's.
 
 use crate::evidence::Evidence;
+use crate::watch::Standing;
 use hyperplan_encode as encode;
 use hyperplan_problem::answer::{Quantifiers, ReasonCode, States};
 use hyperplan_solver::{self as solver, PrintedModelError, Unknown};
@@ -350,6 +351,9 @@ pub enum Note {
         /// The greatest bound.
         bound: u64,
     },
+    /// What was being done when the search ended without an answer.
+    #[error("it was stopped at this: {0}")]
+    Stopped(Standing),
     /// A path that the solver chose relies on the outcomes of nondeterministic actions.
     #[error("{path} relies on outcomes that its actions might not have; `exists {path}` picks them too")]
     PicksOutcomes {

@@ -23,6 +23,7 @@ mod prepare;
 mod race;
 mod search;
 mod solve;
+mod watch;
 
 pub use cheapest::{Cheapest, Value, cheapest};
 pub use config::{Config, Outcome, Quantifiers, Seconds, States, Verdict, Verified};
@@ -33,3 +34,4 @@ pub use hyperplan_encode::{Error as EncodeError, Limits};
 pub use lint::{Budget, Lints, Uninspected, lint, lint_systems};
 pub use minimize::{Least, MinimizeError, ProblemOf, minimize};
 pub use solve::solve;
+pub use watch::{Stage, Standing, Watch};

@@ -85,8 +85,17 @@ pub fn minimize<E>(
     let parts = conjuncts(&find(&problem, objective, low)?.formula);
     let chain = Chain { end: low, whole: !parts.is_empty(), parts, problem };
     let graphs = Graphs::default();
-    let mut minimizer =
-        Minimizer { objective, problem_of, config, graphs, chain, low, high, spent: Spent::default() };
+    let mut minimizer = Minimizer {
+        objective,
+        problem_of,
+        config,
+        graphs,
+        chain,
+        first: low,
+        low,
+        high,
+        spent: Spent::default(),
+    };
     let mut last = minimizer.last()?;
     if let Some(none) = last.take_if(|last| last.outcome.verdict == Verdict::Unrealizable) {
         minimizer.low = high;
@@ -119,6 +128,8 @@ struct Minimizer<'a, E> {
     config: &'a Config,
     graphs: Graphs,
     chain: Chain,
+    /// The first value of the range.
+    first: i64,
     /// Smaller values are unrealizable.
     low: i64,
     high: i64,
@@ -329,6 +340,8 @@ impl<E> Minimizer<'_, E> {
         limit: Option<Duration>,
     ) -> Result<Solved, MinimizeError<E>> {
         let objective = find(&problem, self.objective, value)?;
+        let refuted = Some(self.low).filter(|low| *low > self.first);
+        self.config.watch.tell(|standing| (standing.value, standing.least) = (Some(value), refuted));
         let mut config = self.config.clone();
         if let Some(limit) = limit {
             config.deadline = config.deadline.within(limit);
@@ -336,6 +349,11 @@ impl<E> Minimizer<'_, E> {
         let outcome = solve_sharing(&problem, objective, &config, &self.graphs)
             .map_err(|error| MinimizeError::Solve { value, error })?;
         self.spent.add(&outcome);
+        if outcome.verdict == Verdict::Realizable {
+            self.config.watch.tell(|standing| {
+                standing.best = Some(standing.best.map_or(value, |best| best.min(value)));
+            });
+        }
         Ok(Solved { value, problem, outcome })
     }
 

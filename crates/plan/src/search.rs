@@ -7,7 +7,9 @@ use crate::decide::Decision;
 use crate::fact::{Error, Note, Reason, Unsupported};
 use crate::oracle::{Account, Oracle, Stop};
 use crate::prepare::{decided, is_existential, no_dead_ends, without_paths};
+use crate::watch::Stage;
 use hyperplan_encode::{self as encode, Encoder, Graphs};
+use hyperplan_problem::answer::ReasonCode;
 use hyperplan_problem::{Objective, PathId, Problem, Strategy};
 use hyperplan_verify::{Budget, holds_for_all_outcomes};
 use std::time::Instant;
@@ -105,7 +107,10 @@ fn concluded(
     found: Result<Option<Assignment>, Stop>,
     account: &Account,
 ) -> Result<Outcome, Error> {
-    let undecided = |reason, mut outcome: Outcome| {
+    let undecided = |reason: Reason, mut outcome: Outcome| {
+        if matches!(reason.code(), ReasonCode::Timeout | ReasonCode::Interrupted | ReasonCode::OutOfMemory) {
+            outcome.notes.push(Note::Stopped(config.watch.standing()));
+        }
         outcome.notes.extend(long_horizon(encoder.objective));
         Ok(Outcome { reason: Some(reason), ..outcome })
     };
@@ -121,6 +126,7 @@ fn concluded(
     outcome.notes.extend(found.iter().flat_map(|known| picked_outcomes(encoder, known)));
     let witness = found.map(|known| strategy(encoder, &known));
     if let Some(strategy) = witness.as_ref().filter(|_| config.verify) {
+        config.watch.stage(Stage::Verifying);
         let start = Instant::now();
         let verified = confirm(encoder, config, strategy, (account, outcome.quantifiers));
         outcome.seconds.verify = start.elapsed().as_secs_f64();

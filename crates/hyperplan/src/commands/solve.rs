@@ -11,9 +11,10 @@ use crate::output::Output;
 use crate::parameter::Searched;
 use crate::plans;
 use crate::report::{Picture, json, write_picture};
+use crate::waiting::Waiting;
 use crate::wish::Wish;
 use hyperplan_outlet::one_line;
-use hyperplan_plan::{self as plan, MinimizeError};
+use hyperplan_plan::{self as plan, MinimizeError, Watch};
 use hyperplan_problem::answer::plans::PlanFormat;
 use hyperplan_problem::answer::{
     Answer, Below, CostValue, Failed, Ordered, ReasonCode, Seconds, Size, Solver, Verdict, Verified,
@@ -51,7 +52,12 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
             out.remark(format_args!("note: {name}: its own `minimize` is left aside for `--minimize`"));
         }
         guard::doing("searching for a strategy");
-        let (outcome, searched, open) = match solve(&loaded, objective, &wish, &config.plan, explain) {
+        let own = plan::Config { watch: Watch::default(), ..config.plan.clone() };
+        guard::watching(&own.watch);
+        let waiting = Waiting::begin(&own.watch, verbose, out);
+        let solved = solve(&loaded, objective, &wish, &own, explain);
+        drop(waiting);
+        let (outcome, searched, open) = match solved {
             Ok(found) => found,
             Err((failure, reason_code)) => {
                 // The other objectives may do better.

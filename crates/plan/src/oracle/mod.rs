@@ -7,6 +7,7 @@ mod tests;
 use crate::config::Config;
 use crate::evidence::{Evidence, full};
 use crate::fact::{Error, Note, Reason, Wrong};
+use crate::watch::Stage;
 use hyperplan_encode::Encoder;
 use hyperplan_smt::{Features, Model, Script, Term, check_model};
 use hyperplan_solver::{self as solver, Answer, Identity, Options, QuerySize, Session, Spec, Unknown, open};
@@ -136,10 +137,16 @@ impl<'c> Oracle<'c> {
         if self.config.deadline.passed() {
             return Err(Stop::Unknown(self.late()));
         }
+        self.config.watch.tell(|standing| {
+            standing.stage = Stage::Asking;
+            standing.checks += 1;
+        });
         let start = Instant::now();
         let answer = dialogue.session.check_within(script, &[], &self.config.deadline, effort);
         self.account.solving += start.elapsed().as_secs_f64();
         self.account.largest = std::mem::take(&mut self.account.largest).max(dialogue.session.size());
+        let variables = self.account.largest.variables;
+        self.config.watch.tell(|standing| standing.variables = standing.variables.max(variables));
         let answer = answer?;
         if answer != Answer::Sat {
             self.introduce(dialogue);
