@@ -217,7 +217,8 @@ impl<E> Minimizer<'_, E> {
 
     /// The answer for the last value of a range that is not wide, if more does not hurt and it is soon found.
     fn last(&mut self) -> Result<Option<Solved>, MinimizeError<E>> {
-        if self.high == self.low || self.high - self.low > NEAR {
+        // Other solvers take longer than what a guess may save.
+        if self.high == self.low || self.high - self.low > NEAR || !self.config.solver.is_embedded() {
             return Ok(None);
         }
         self.follow(self.high);

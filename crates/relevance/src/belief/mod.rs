@@ -6,9 +6,9 @@
 //! paths do not know, as their choice may not depend on the others. It has to be empty in the end, as a chance is gone once
 //! nothing more can be asked for. A chance that becomes `false` loses.
 //!
-//! Before all else the other player is given a turn: if it wins by answering step by step, the leading paths lose
-//! ([`response`]). Then two searches are made of beliefs. The first keeps only the most promising at each time ([`beam`]), which
-//! finds a strategy soon where there are many. The second is depth first, with what was learnt from failing: for a node, the
+//! Two searches are made of beliefs. The first keeps only the most promising at each time ([`beam`]), at first very few, which
+//! finds a strategy soon where there are many. Before it keeps more the other player is given a turn: if it wins by answering
+//! step by step, the leading paths lose ([`response`]). The second is depth first, with what was learnt from failing: for a node, the
 //! chances by which each of its moves failed, traced back, are a *nogood*. A belief that includes a nogood of the same leading states at the same time need not be
 //! searched. This is conflict-directed backjumping with learning (Dechter), the constraint being that no chance be missed.
 //!
@@ -83,8 +83,9 @@ pub fn believe(
 /// How much later than the earliest a run may owe nothing but safety, at first.
 const SLACK: u32 = 4;
 
-/// How many beliefs at a time the beams keep, one after the other.
-const WIDTHS: [usize; 5] = [4, 16, 128, 1024, 8192];
+/// How many beliefs at a time the beams keep: the first, and the others one after the other.
+const NARROW: usize = 4;
+const WIDTHS: [usize; 4] = [16, 128, 1024, 8192];
 
 fn narrowed<const N: usize>(
     arena: &Arena<'_>,
@@ -137,13 +138,17 @@ fn narrowed<const N: usize>(
         Chances::new(&own, (wish, rest), leading, leads.chain(&others).cloned().collect())
     };
     let any = leads(None)?;
+    // Where there are many strategies, one of the most promising is among them.
+    let Some(mut all) = among(Wish::Leading, &any) else { return Ok(Belief::Unfit) };
+    let answer = beam::search(&mut all, NARROW, budget / 8)?;
+    if !matches!(answer, Belief::Open) {
+        return Ok(answer);
+    }
     let Some(mut answers) = among(Wish::Other, &any) else { return Ok(Belief::Unfit) };
     if response::is_won(&mut answers, budget / 4)? {
         return Ok(Belief::Hopeless);
     }
     drop(answers);
-    // Where there are many strategies, one of the most promising is among them.
-    let Some(mut all) = among(Wish::Leading, &any) else { return Ok(Belief::Unfit) };
     for width in WIDTHS {
         let answer = beam::search(&mut all, width, budget)?;
         if !matches!(answer, Belief::Open) {
