@@ -203,6 +203,8 @@ fn files(folder: &Path, found: &mut BTreeSet<PathBuf>) {
 fn no_file_is_dead() {
     let mut all = BTreeSet::new();
     files(Path::new(""), &mut all);
+    // What a script compiles is no part of a crate.
+    all.retain(|file| !file.starts_with("scripts"));
     for module in everything() {
         all.remove(&module.file);
     }
