@@ -156,7 +156,12 @@ fn picked_outcomes(encoder: &Encoder<'_>, known: &Assignment) -> Vec<Note> {
         return Vec::new();
     }
     let picks = |path: &PathId| {
-        known[usize::from(*path)].as_ref().is_some_and(|known| encoder.writer.picks_outcomes(*path, known))
+        // Where there is one action, a path is what it leads to, and nothing else is chosen.
+        let system = &encoder.problem.systems[objective.paths[*path].system];
+        system.actions.len() > 1
+            && known[usize::from(*path)]
+                .as_ref()
+                .is_some_and(|known| encoder.writer.picks_outcomes(*path, known))
     };
     let picking: Vec<PathId> = objective.leading_block().into_iter().filter(picks).collect();
     if picking.is_empty() {

@@ -93,6 +93,17 @@ fn notes_are_facts() {
     let outcome = solved("within T { exists p. start[p] & N G action[p] == push & F goal[p] }", &config());
     let notes = outcome.expect("it is supported").notes;
     assert!(matches!(notes.as_slice(), [Note::PicksOutcomes { path }] if path == "p"), "{notes:?}");
+    // With one action alone nothing is picked but outcomes.
+    for (actions, all, notes) in [("step", "step", 0), ("step, rest", "step | rest", 1)] {
+        let text = format!(
+            "system S {{ state x: 0..9; action {actions}; init x == 0; on {all} {{ x' in {{x + 1, x + 2}}; }} }}
+             objective o within 3 {{ exists p. F x[p] == 6 }}"
+        );
+        let lowered = read(&mut SourceMap::new(), "test.hp", &text, &NoFiles, &Overrides::none());
+        let outcome =
+            solve(&lowered.problem, &lowered.problem.objectives[0], &config()).expect("it is supported");
+        assert_eq!((outcome.verdict, outcome.notes.len()), (Verdict::Realizable, notes), "{actions}");
+    }
     // In mere left and right the system has an end.
     let text = "system S { state x: 0..1; action up; on up { x' = x + 1; } }
         objective o within 3 { forall p. x[p] == 5 }";

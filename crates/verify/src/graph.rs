@@ -3,7 +3,7 @@
 use crate::eval::{eval, truth};
 use crate::report::{Error, Stop};
 use hyperplan_problem::{
-    ActionId, Also, Expr, Leaf, StepLeaf, System, TransLeaf, Type, Update, Value, VarId,
+    ActionId, Also, Expr, LabelId, Leaf, StepLeaf, System, TransLeaf, Type, Update, Value, VarId,
 };
 use rustc_hash::FxHashMap;
 use std::rc::Rc;
@@ -74,6 +74,31 @@ pub(crate) struct Graph<'p> {
     nodes: TiVec<StateId, Node>,
     index: FxHashMap<Rc<[Value]>, StateId>,
     pub(crate) limit: usize,
+    /// The labels that `trans` reads of the state after a step, in those too that it reads.
+    after: Vec<bool>,
+}
+
+/// In place of a value that nobody reads.
+const NOTHING: Value = Value::Bool(false);
+
+/// Which labels `trans` reads of the state after a step. A label reads only labels before it.
+fn read_after(system: &System) -> Vec<bool> {
+    let mut wanted = vec![false; system.labels.len()];
+    system.trans.for_each_leaf(&mut |leaf| {
+        if let TransLeaf::After(Leaf::Label(label)) = leaf {
+            wanted[usize::from(*label)] = true;
+        }
+    });
+    for at in (0..wanted.len()).rev() {
+        if wanted[at] {
+            system.labels[LabelId::from(at)].expr.for_each_leaf(&mut |leaf| {
+                if let Leaf::Label(label) = leaf {
+                    wanted[usize::from(*label)] = true;
+                }
+            });
+        }
+    }
+    wanted
 }
 
 /// Why an expression of a system has no value: in a finite system none may be without one.
@@ -93,6 +118,7 @@ impl<'p> Graph<'p> {
             nodes: TiVec::new(),
             index: FxHashMap::default(),
             limit: limit.min(u32::MAX as usize - 1),
+            after: read_after(system),
         }
     }
 
@@ -287,9 +313,11 @@ impl<'p> Graph<'p> {
             return Ok(true);
         }
         let mut labels = Vec::with_capacity(self.system.labels.len());
-        for label in &self.system.labels {
-            labels
-                .push(eval(&label.expr, &|l| read(there, &labels, *l)).ok_or_else(|| no_value(self.system))?);
+        for (label, wanted) in self.system.labels.iter().zip(&self.after) {
+            // The others are not read.
+            let value =
+                if *wanted { eval(&label.expr, &|l| read(there, &labels, *l)) } else { Some(NOTHING) };
+            labels.push(value.ok_or_else(|| no_value(self.system))?);
         }
         let holds = truth(&self.system.trans, &|leaf| match *leaf {
             TransLeaf::Before(leaf) => self.leaf(from, leaf),

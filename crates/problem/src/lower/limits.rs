@@ -8,7 +8,7 @@ use hyperplan_syntax::{Diagnostic, Span};
 pub const MAX_DEPTH: u32 = 1_000;
 
 /// Most nodes of one objective or system once its definitions are expanded.
-pub const MAX_NODES: u32 = 2_000_000;
+pub const MAX_NODES: u32 = 6_000_000;
 
 /// Bounds of temporal operators and the K of `within K` may be at most this: what the encoder takes.
 pub const MAX_BOUND: i64 = 100_000;
