@@ -4,6 +4,7 @@ use crate::foreign::Foreign;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use hyperplan_family as family;
+use hyperplan_import::{Dialect, Known};
 use hyperplan_problem::answer::{Quantifiers, States, WitnessPath};
 use std::path::PathBuf;
 
@@ -65,6 +66,8 @@ pub(crate) enum SolveFormat {
     Geojson,
     /// Actions as VAL reads them
     Pddl,
+    /// Traces as NuSMV shows them, in the names of its model
+    Nusmv,
 }
 
 /// A problem file and how to read it.
@@ -103,6 +106,23 @@ pub(crate) struct Reading {
     /// How formulas of other tools are read beyond K: `pes`, `opt`, `hpes` or `hopt`; without it, as on finite traces
     #[arg(long, value_name = "S", requires = "bound")]
     pub(crate) semantics: Option<String>,
+    /// The language of these formulas, which matters where operators stand beside each other without parentheses; without
+    /// it, that whose signs they have
+    #[arg(long, value_parser = dialects(), value_name = "NAME")]
+    pub(crate) dialect: Option<Dialect>,
+}
+
+/// The languages of formulas.
+fn dialects() -> impl TypedValueParser<Value = Dialect> {
+    let named = |name: String| Dialect::ALL.into_iter().find(|dialect| dialect.name() == name);
+    PossibleValuesParser::new(Dialect::ALL.map(Dialect::name))
+        .try_map(move |name| named(name).ok_or("it is none of them"))
+}
+
+/// What is known of a formula.
+fn known() -> impl TypedValueParser<Value = Known> {
+    PossibleValuesParser::new(["realizable", "unrealizable", "holds", "violated"])
+        .try_map(|word| Known::of_word(&word).ok_or("it is none of them"))
 }
 
 /// Which objective, and how to print what comes of it.
@@ -203,7 +223,7 @@ pub(crate) struct Solve {
     pub(crate) others: Others,
     #[command(flatten)]
     pub(crate) selection: Selection,
-    /// How the answer is printed; `csv`, `ros`, `geojson` and `pddl`: the strategy alone, for other programs
+    /// How the answer is printed; `csv`, `ros`, `geojson`, `pddl` and `nusmv`: the strategy alone, for other programs
     #[arg(long, value_enum, value_name = "FORMAT", default_value_t = SolveFormat::Text)]
     pub(crate) format: SolveFormat,
     #[command(flatten)]
@@ -408,6 +428,9 @@ pub(crate) struct Import {
     pub(crate) problem: Problem,
     #[command(flatten)]
     pub(crate) others: Others,
+    /// What is known of the formula: it is kept in a comment, for `compare`
+    #[arg(long, value_parser = known(), value_name = "WORD")]
+    pub(crate) status: Option<Known>,
     /// The problem file; without it, standard output
     #[arg(short, long, value_name = "FILE.hp")]
     pub(crate) output: Option<PathBuf>,
@@ -487,10 +510,13 @@ pub(crate) struct Plot {
 #[derive(Debug, Args)]
 #[command(after_help = COMPARE_HELP)]
 pub(crate) struct Compare {
-    /// Problem files (.hp), SMT-LIB files (.smt2), folders with such files, or patterns (`'specs/**/*-10.hp'`); without
-    /// any, what was run before is reported again
+    /// Problem files (.hp), SMT-LIB files (.smt2), folders with such files, or patterns (`'specs/**/*-10.hp'`); models and
+    /// formulas of other tools (.smv, .hq), together one problem, or tables of such (.tsv); without any, what was run before
+    /// is reported again
     #[arg(value_name = "FILE|FOLDER|PATTERN")]
     pub(crate) files: Vec<String>,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
     /// Leaves out files that cannot be used, and says why, instead of running nothing
     #[arg(long)]
     pub(crate) skip_bad: bool,

@@ -5,6 +5,7 @@ use crate::failure::{Failure, Result};
 use crate::files::{self, read_source};
 use crate::foreign::Foreign;
 use hyperplan_import::{Input, Kind, Options};
+use hyperplan_outlet::one_line;
 use std::path::{Path, PathBuf};
 
 /// Sorts what was typed behind the file: models and formulas belong to it, a strategy is one. Texts are read.
@@ -20,7 +21,10 @@ pub(crate) fn gather(cli: &mut Cli) -> Result<()> {
             args.problem.foreign = found(&args.problem.file, &mut args.others.more, &args.others.reading)?
         }
         Command::Import(args) => {
-            args.problem.foreign = found(&args.problem.file, &mut args.others.more, &args.others.reading)?
+            args.problem.foreign = found(&args.problem.file, &mut args.others.more, &args.others.reading)?;
+            if let Some(foreign) = &mut args.problem.foreign {
+                foreign.options.status = args.status;
+            }
         }
         Command::Verify(args) => {
             let mut more = behind(&mut args.plan);
@@ -59,7 +63,8 @@ fn one_strategy(plan: &Plan, model: bool) -> Result<()> {
     Ok(())
 }
 
-fn kind(path: &Path) -> Option<Kind> {
+/// The kind of a file of another tool.
+pub(crate) fn kind(path: &Path) -> Option<Kind> {
     Kind::of(path.to_str()?)
 }
 
@@ -89,23 +94,39 @@ fn found(file: &Path, more: &mut Vec<PathBuf>, reading: &Reading) -> Result<Opti
             (None, None) => Ok(None),
         };
     }
-    if let Some(semantics) = reading.semantics.as_deref()
-        && !["pes", "opt", "hpes", "hopt"].contains(&semantics)
-    {
-        return Err(Failure::input(format_args!(
-            "--semantics {semantics} is none of pes, opt, hpes and hopt"
-        )));
+    let files = std::iter::once(file).chain(all.iter().map(PathBuf::as_path));
+    together(files, options(reading)?).map(Some)
+}
+
+/// How formulas are to be read.
+pub(crate) fn options(reading: &Reading) -> Result<Options> {
+    if let Some(semantics) = reading.semantics.as_deref() {
+        known_semantics("--semantics", semantics)?;
     }
+    let Reading { bound, semantics, dialect } = reading.clone();
+    Ok(Options { bound, semantics, dialect, status: None })
+}
+
+/// Refuses semantics that there are not.
+pub(crate) fn known_semantics(what: &str, semantics: &str) -> Result<()> {
+    if ["pes", "opt", "hpes", "hopt"].contains(&semantics) {
+        return Ok(());
+    }
+    Err(Failure::input(format_args!("{what} {semantics} is none of pes, opt, hpes and hopt")))
+}
+
+/// Models and formulas, read.
+pub(crate) fn together<'p>(files: impl Iterator<Item = &'p Path>, options: Options) -> Result<Foreign> {
     let mut inputs = Vec::new();
-    for path in std::iter::once(file).chain(all.iter().map(PathBuf::as_path)) {
+    for path in files {
         if kind(path).is_none() {
             let name = files::name(path);
             return Err(Failure::input(format_args!(
                 "{name} is neither a model (.smv) nor a formula (.hq) of another tool"
             )));
         }
-        inputs.push(Input { name: path.display().to_string(), text: read_source(path)? });
+        let name = one_line(&path.display().to_string()).into_owned();
+        inputs.push(Input { name, text: read_source(path)? });
     }
-    let options = Options { bound: reading.bound, semantics: reading.semantics.clone() };
-    Ok(Some(Foreign { inputs, options }))
+    Ok(Foreign { inputs, options })
 }

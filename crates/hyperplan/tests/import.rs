@@ -97,14 +97,139 @@ fn instances_of_another_tool_have_their_right_verdicts() {
         let files: Vec<String> =
             models.split(' ').chain([formula]).map(|file| text(&folder.join(file)).to_owned()).collect();
         let files = files.iter().map(String::as_str);
-        let options = ["--bound", bound, "--quiet", "--timeout", "60"];
+        let options = ["--bound", bound, "--quiet", "--timeout", "10"];
         let arguments: Vec<&str> = ["solve"].into_iter().chain(files).chain(options).collect();
         let run = hyperplan(&arguments);
         let expected = i32::from(verdict != "realizable");
-        // Undecided in a minute, in a build for tests, is not wrong.
+        // Undecided in some seconds, in a build for tests, is not wrong.
         if run.status != expected && run.status != 3 {
             wrong.push(format!("{formula}: {}, not {verdict}: {}", run.status, run.stderr));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// A table of problems, with the folder of a comparison beside it.
+fn table(rows: &[(&str, &str, &str)]) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let specs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs/import/pass");
+    for (name, ..) in rows {
+        for ending in ["smv", "hq"] {
+            let file = format!("{name}.{ending}");
+            std::fs::copy(specs.join(&file), folder.path().join(&file)).expect("it can be copied");
+        }
+    }
+    let row = |(name, bound, known): &(&str, &str, &str)| {
+        format!("small\t{name}.smv\t{name}.hq\t{bound}\t{known}\tby hand\n")
+    };
+    let path = folder.path().join("table.tsv");
+    let text =
+        format!("# family\tmodels\tformula\tbound\tknown\n{}", rows.iter().map(row).collect::<String>());
+    std::fs::write(&path, text).expect("it can be written");
+    (folder, path)
+}
+
+#[test]
+fn tables_of_models_and_formulas_are_compared() {
+    let (folder, path) =
+        table(&[("chain", "6", "holds"), ("modules", "6", "violated"), ("words", "6 pes", "-")]);
+    let out = folder.path().join("out");
+    let [model, formula] = files("names");
+    let compare = [
+        "compare",
+        text(&path),
+        &model,
+        &formula,
+        "--bound",
+        "6",
+        "--solver",
+        "builtin",
+        "--out",
+        text(&out),
+    ];
+    let run = hyperplan(&compare);
+    assert_eq!(run.status, 0, "{}{}", run.stdout, run.stderr);
+    let imported = |name: &str| std::fs::read_to_string(out.join("imported").join(name)).expect(name);
+    assert!(imported("small/chain-chain-6.hp").contains("\n// chain: realizable\n"));
+    assert!(imported("small/modules-modules-6.hp").contains("\n// modules: unrealizable\n"));
+    assert!(imported("small/words-words-6-pes.hp").contains("within 6 semantics pes"));
+    assert!(!imported("names-names-6.hp").contains("realizable\n"));
+    let log = std::fs::read_to_string(out.join("runs.jsonl")).expect("it is there");
+    assert_eq!(log.matches("\"expected\":\"").count(), 2, "{log}");
+    let again = hyperplan(&compare);
+    assert!(again.stderr.contains("of 4 runs were done before"), "{}", again.stderr);
+}
+
+#[test]
+fn tables_that_are_wrong_are_told_of() {
+    let (folder, path) = table(&[("chain", "6", "violated")]);
+    let out = folder.path().join("out");
+    let compare = |more: &[&str]| {
+        hyperplan(&[&["compare", text(&path), "--solver", "builtin", "--out", text(&out)], more].concat())
+    };
+    let run = compare(&[]);
+    assert!(
+        run.status == 4 && run.stdout.contains("the known status is wrong"),
+        "{}{}",
+        run.stdout,
+        run.stderr
+    );
+    for (row, said) in [
+        ("small\tchain.smv\tchain.hq\tsix\t-", "table.tsv:1: `six` is no bound"),
+        ("small\tchain.smv\tchain.hq\t6 best\t-", "`6 best` is no bound"),
+        ("small\tchain.smv\tchain.hq\t6\tmaybe", "`maybe` is none of"),
+        ("small\tchain.smv", "separated by tabs"),
+        ("small\tother.smv\tchain.hq\t6\t-", "there is no such file"),
+        ("small\tchain.smv chain.smv\tchain.hq\t6\t-", "1 paths are quantified"),
+    ] {
+        std::fs::write(&path, row).expect("it can be written");
+        let run = compare(&[]);
+        assert!(run.status == 2 && run.stderr.contains(said), "{row}: {}", run.stderr);
+        // With a good one beside it, it is left out.
+        std::fs::write(&path, format!("{row}\nsmall\tchain.smv\tchain.hq\t6\t-")).expect("it can be written");
+        let run = compare(&["--skip-bad"]);
+        let whole = said.contains("tabs") || said.contains("none of") || said.contains("no bound");
+        assert_eq!(run.status, if whole { 2 } else { 0 }, "{row}: {}", run.stderr);
+    }
+    let run = compare(&["--bound", "3"]);
+    assert!(run.status == 2 && run.stderr.contains("tables have bounds"), "{}", run.stderr);
+}
+
+#[test]
+fn what_is_known_is_kept() {
+    let [model, formula] = files("chain");
+    let import = |status| hyperplan(&["import", &model, &formula, "--bound", "6", "--status", status]);
+    let run = import("holds");
+    assert!(
+        run.status == 0 && run.stdout.contains("\n// chain: realizable\n"),
+        "{}{}",
+        run.stdout,
+        run.stderr
+    );
+    let run = import("unrealizable");
+    assert!(run.stdout.contains("\n// chain: unrealizable\n"), "{}", run.stdout);
+    assert_eq!(import("yes").status, 2);
+}
+
+#[test]
+fn verifiers_have_their_words_and_traces() {
+    let run = solve("modules", &[]);
+    assert_eq!(run.stdout.trim(), "modules: unrealizable (violated)");
+    let [model, formula] = files("names");
+    let nusmv = |model: &str, formula: &str| {
+        hyperplan(&["solve", model, formula, "--bound", "6", "--format", "nusmv"])
+    };
+    let run = nusmv(&model, &formula);
+    assert!(run.stderr.contains("names: realizable (holds)"), "{}", run.stderr);
+    let begins = "Trace Description: names, path G_\nTrace Type: Witness\n  -> State: 1.1 <-\n";
+    assert!(run.stdout.starts_with(begins) && run.stdout.contains("State: 1.7 <-"), "{}", run.stdout);
+    assert!(run.stdout.contains("    p1-TOKEN = "), "{}", run.stdout);
+    let [model, formula] = files("kinds");
+    let run = nusmv(&model, &formula);
+    assert!(run.stdout.contains(" = 0ud"), "{}", run.stdout);
+    let run = hyperplan(&["solve", "rooms.hp", "--objective", "all", "--format", "nusmv"]);
+    assert!(run.status == 2 && run.stderr.contains("of one objective"), "{}", run.stderr);
+    // Systems of our own have actions that say something.
+    let run = hyperplan(&["solve", "rooms.hp", "--objective", "sp", "--format", "nusmv"]);
+    assert!(run.stdout.contains("Input: 1.2 <-\n    action = "), "{}", run.stdout);
 }

@@ -1,15 +1,39 @@
 //! Formulas of HyperQB 1 and 2.0, HyperLasso and AutoHyper: `exists A. forall B. F(goal[A]) /\ ...`.
 //!
-//! One grammar reads them all: what one of them writes means the same in the others that take it.
+//! One parser reads them all; where they differ, see [`Grammar`](crate::dialect::Grammar).
 
+use crate::dialect::{Dialect, USUAL};
 use crate::lexer::{Tok, lex};
 use crate::parser::{Parse, Parser};
 use crate::tree::Formula;
 use hyperplan_syntax::{Diagnostic, SourceId};
 
-/// The formula of a text.
-pub(crate) fn parse(source: SourceId, text: &str) -> Parse<Formula> {
-    let mut parser = Parser::new(lex(source, text)?);
+/// The formula of a text, in a language that is given or seen from its signs; with a warning where that language reads it
+/// otherwise than usual.
+pub(crate) fn parse(
+    source: SourceId,
+    text: &str,
+    dialect: Option<Dialect>,
+) -> Parse<(Formula, Option<Diagnostic>)> {
+    let tokens = lex(source, text)?;
+    let usual = formula(Parser::of(tokens.clone(), &USUAL));
+    let Some(own) = dialect.or_else(|| Dialect::of(&tokens)) else { return Ok((usual?, None)) };
+    let read = formula(Parser::of(tokens, own.grammar()));
+    match (read, usual) {
+        (Ok(formula), Ok(usual)) if usual != formula => {
+            let message =
+                format!("{} binds operators otherwise than usual, and that matters here", own.tool());
+            let warning = Diagnostic::warning("other-precedence", formula.body.span, message);
+            let help = "this is read as it does; parentheses make it plain, and `--dialect` names another";
+            Ok((formula, Some(warning.with_help(help))))
+        }
+        // A language that was only guessed is perhaps another.
+        (Err(_), Ok(formula)) if dialect.is_none() => Ok((formula, None)),
+        (read, _) => Ok((read?, None)),
+    }
+}
+
+fn formula(mut parser: Parser<'_>) -> Parse<Formula> {
     let mut quantifiers: Vec<(bool, hyperplan_syntax::ast::Ident)> = Vec::new();
     loop {
         let forall = match parser.token().text {

@@ -28,8 +28,7 @@ pub(crate) struct Token<'a> {
 /// Longer signs before their beginnings.
 const SIGNS: &[&str] = &[
     "<->", "<=>", ":=", "..", "::", "->", "=>", "!=", "<=", ">=", "<<", ">>", "/\\", "\\/", "&&", "||", "==",
-    "(", ")", "{", "}", "[", "]", ",", ";", ":", ".", "=", "<", ">", "+", "-", "*", "/", "&", "|", "!", "~",
-    "?", "¬", "∧", "∨", "→", "↔", "∃", "∀",
+    ":", ".", "=", "<", ">", "+", "-", "*", "/", "&", "|", "!", "~", "?", "¬", "∧", "∨", "→", "↔", "∃", "∀",
 ];
 
 /// The tokens of a text, the last of which is the end; or what cannot be read.
@@ -55,8 +54,8 @@ pub(crate) fn lex(source: SourceId, text: &str) -> Parse<Vec<Token<'_>>> {
                 }
             },
             c if c.is_ascii_alphabetic() || c == b'_' => (Tok::Word, word(rest)),
-            _ => match SIGNS.iter().find(|sign| rest.starts_with(**sign)) {
-                Some(sign) => (Tok::Sign, sign.len()),
+            _ => match sign(rest) {
+                Some(length) => (Tok::Sign, length),
                 None => {
                     let found = rest.chars().next().unwrap_or_default();
                     let message = format!("unexpected character `{}`", found.escape_debug());
@@ -71,6 +70,15 @@ pub(crate) fn lex(source: SourceId, text: &str) -> Parse<Vec<Token<'_>>> {
         tokens.push(Token { tok, text: &rest[..length], span: span(length) });
         at += length;
     }
+}
+
+/// How long the sign at the beginning is.
+fn sign(text: &str) -> Option<usize> {
+    // Most signs are one character, and cannot begin another.
+    if matches!(text.as_bytes()[0], b'(' | b')' | b'{' | b'}' | b'[' | b']' | b',' | b';') {
+        return Some(1);
+    }
+    SIGNS.iter().find(|sign| text.starts_with(**sign)).map(|sign| sign.len())
 }
 
 /// Behind blanks and comments, which are `--` to the end of the line, `//` as well, and `/-- ... --/`.

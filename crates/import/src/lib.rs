@@ -7,7 +7,9 @@
 //! `lexer` and `parser` read models and formulas alike; `smv` puts modules together; `lower` turns expressions into those
 //! of the problem language, `system` models into systems.
 
+mod dialect;
 mod hq;
+mod known;
 mod lexer;
 mod lower;
 mod names;
@@ -16,13 +18,17 @@ mod smv;
 mod system;
 mod tree;
 
+pub use dialect::Dialect;
 use hyperplan_syntax::ast::{
     self, Expr, ExprKind, File, Formula, Ident, Item, Objective, ObjectiveBody, Quantifier,
 };
 use hyperplan_syntax::{Diagnostic, SourceId, SourceMap, Span};
+pub use known::Known;
+
 use lower::{Lower, Named, Path, Place};
 use names::Names;
 use smv::model::Model;
+use std::collections::BTreeMap;
 
 /// What kind of file it is, by its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,7 +67,25 @@ pub struct Options {
     pub bound: Option<u32>,
     /// `semantics S`.
     pub semantics: Option<String>,
+    /// The language of formulas; without it, that whose signs they have.
+    pub dialect: Option<Dialect>,
+    /// What is known of the formulas.
+    pub status: Option<Known>,
 }
+
+/// A variable as it is in a model.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Original {
+    /// Its full name.
+    pub name: String,
+    /// Whether it has a sign, and how many bits, if it is a word.
+    pub word: Option<(bool, u32)>,
+    /// Whether it is an input.
+    pub input: bool,
+}
+
+/// By system and name in the problem.
+pub type Originals = BTreeMap<String, BTreeMap<String, Original>>;
 
 /// What some files mean.
 #[derive(Clone, Debug, Default)]
@@ -72,6 +96,8 @@ pub struct Imported {
     pub diagnostics: Vec<Diagnostic>,
     /// What is doubtful, for who asks for that.
     pub doubts: Vec<Diagnostic>,
+    /// What the variables of each system are in the original.
+    pub originals: Originals,
     /// Comments that say where things come from, for a file of its own.
     pub about: String,
 }
@@ -121,6 +147,7 @@ pub fn import(inputs: &[Input], options: &Options, sources: &mut SourceMap) -> I
         let name = given.name(stem(&input.name));
         imported.about += &format!("// {name}: {}\n", input.name);
         let name = Ident { name, span: lower.models[at].model.span };
+        imported.originals.insert(name.name.clone(), lower.models[at].originals());
         systems.push(name.clone());
         let system = system::system(&mut lower, at, name, &mut imported.diagnostics);
         imported.file.items.push(Item::System(system));
@@ -129,8 +156,16 @@ pub fn import(inputs: &[Input], options: &Options, sources: &mut SourceMap) -> I
     for (input, id) in formulas {
         let name = given.name(stem(&input.name));
         imported.about += &format!("// {name}: {}\n", input.name);
+        let known = Known::of(id, &input.text, options);
+        if let Ok(Some(known)) = known {
+            imported.about += &format!("// {name}: {}\n", known.word());
+        }
+        imported.diagnostics.extend(known.err().map(|error| *error));
         match objective(&mut lower, (name, input, id), &numbers, &systems, options) {
-            Ok(objective) => imported.file.items.push(Item::Objective(objective)),
+            Ok((objective, warning)) => {
+                imported.file.items.push(Item::Objective(objective));
+                imported.diagnostics.extend(warning);
+            }
             Err(error) => imported.diagnostics.push(*error),
         }
     }
@@ -151,8 +186,8 @@ fn objective(
     models: &[usize],
     systems: &[Ident],
     options: &Options,
-) -> parser::Parse<Objective> {
-    let formula = hq::parse(id, &input.text)?;
+) -> parser::Parse<(Objective, Option<Diagnostic>)> {
+    let (formula, warning) = hq::parse(id, &input.text, options.dialect)?;
     let whole = Span::new(id, 0..0);
     let count = formula.quantifiers.len();
     if models.len() != 1 && models.len() != count {
@@ -177,13 +212,18 @@ fn objective(
     lower.paths = paths;
     let body = lower.truth(Place::main(models[0]), &formula.body);
     lower.paths = Vec::new();
-    let body = body?;
+    let body = body.map_err(|mut error| {
+        let about = warning.as_ref().and_then(|warning| Some((warning.span?, warning.message.clone())));
+        error.related.extend(about);
+        error
+    })?;
     let within = options.bound.map(|bound| Expr { kind: ExprKind::Number(bound.to_string()), span: whole });
     let semantics = options.semantics.clone().filter(|_| within.is_some());
     let semantics = semantics.map(|name| Ident { name, span: whole });
     let body =
         ObjectiveBody::Formula(Formula { defines: Vec::new(), quantifiers, body, minimize: Vec::new() });
-    Ok(Objective { name: Ident { name, span: formula.quantifiers[0].1.span }, within, semantics, body })
+    let name = Ident { name, span: formula.quantifiers[0].1.span };
+    Ok((Objective { name, within, semantics, body }, warning))
 }
 
 /// Refuses operators without bounds, where the formula has no bound as a whole.
@@ -201,7 +241,7 @@ fn bounded(body: &tree::Expr) -> parser::Parse<()> {
             let message = "this operator has no end, and paths of how many steps are meant is not said";
             return lower::wrong("unbounded-operator", e.span, message);
         }
-        stack.extend(e.kind.children());
+        e.kind.for_each_child(&mut |child| stack.push(child));
     }
     Ok(())
 }

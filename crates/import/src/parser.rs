@@ -3,6 +3,7 @@
 //! Expressions are read by operator precedence. Chains are flat, and what nests is bounded, so that whatever walks a
 //! tree may recurse.
 
+use crate::dialect::{Binding, Grammar, USUAL};
 pub(crate) use crate::lexer::Parse;
 use crate::lexer::{Tok, Token};
 use crate::tree::{Access, Bounds, Expr, Infix, Kind, Name, Word};
@@ -12,15 +13,10 @@ use hyperplan_syntax::{Diagnostic, Span};
 /// Expressions nested more deeply are refused. Levels of the problem language are less deep than it allows itself.
 const MAX_NESTING: u32 = 200;
 
-/// How tightly operators bind, as NuSMV has it; temporal ones and the formula languages' `!` in between.
+/// How tightly operators bind, as NuSMV has it; for those in between, in which formula languages differ, see [`Grammar`].
 mod level {
-    pub(super) const IMPLIES: u8 = 1;
-    pub(super) const IFF: u8 = 2;
     pub(super) const CONDITION: u8 = 3;
     pub(super) const OR: u8 = 4;
-    pub(super) const AND: u8 = 5;
-    pub(super) const UNTIL: u8 = 6;
-    pub(super) const TEMPORAL: u8 = 7;
     pub(super) const COMPARE: u8 = 8;
     pub(super) const IN: u8 = 9;
     pub(super) const UNION: u8 = 10;
@@ -58,11 +54,17 @@ pub(crate) struct Parser<'a> {
     pub(crate) open_cases: Vec<Span>,
     /// Between the stars of `*act[A]=1*`, where a star is no product.
     star: bool,
+    /// How operators bind.
+    grammar: &'static Grammar,
 }
 
 impl<'a> Parser<'a> {
     pub(crate) fn new(tokens: Vec<Token<'a>>) -> Self {
-        Parser { tokens, at: 0, depth: 0, paths: None, open_cases: Vec::new(), star: false }
+        Self::of(tokens, &USUAL)
+    }
+
+    pub(crate) fn of(tokens: Vec<Token<'a>>, grammar: &'static Grammar) -> Self {
+        Parser { tokens, at: 0, depth: 0, paths: None, open_cases: Vec::new(), star: false, grammar }
     }
 
     pub(crate) fn token(&self) -> Token<'a> {
@@ -149,9 +151,9 @@ impl<'a> Parser<'a> {
         self.depth += 1;
         let start = self.token().span;
         let mut left = self.operand()?;
-        while let Some((op, level)) = self.infix().filter(|(_, level)| *level >= least) {
+        while let Some((op, binding)) = self.infix().filter(|(_, binding)| binding.level >= least) {
             self.bump();
-            left = self.apply(op, level, left, start)?;
+            left = self.apply(op, binding, left, start)?;
         }
         self.depth -= 1;
         Ok(left)
@@ -163,40 +165,37 @@ impl<'a> Parser<'a> {
         if node.height > MAX_NESTING { too_deep(start) } else { Ok(node) }
     }
 
-    fn apply(&mut self, op: Op, level: u8, left: Expr, start: Span) -> Parse<Expr> {
+    fn apply(&mut self, op: Op, binding: Binding, left: Expr, start: Span) -> Parse<Expr> {
+        let right = binding.right;
         let kind = match op {
-            Op::And => Kind::And(self.chain(op, level, left)?),
-            Op::Or => Kind::Or(self.chain(op, level, left)?),
-            Op::Union => Kind::Union(self.chain(op, level, left)?),
+            Op::And => Kind::And(self.chain(op, right, left)?),
+            Op::Or => Kind::Or(self.chain(op, right, left)?),
+            Op::Union => Kind::Union(self.chain(op, right, left)?),
             Op::Plus | Op::Minus => {
-                let mut items = vec![(false, left), (op == Op::Minus, self.operators(level + 1)?)];
+                let mut items = vec![(false, left), (op == Op::Minus, self.operators(right)?)];
                 while let Some((next @ (Op::Plus | Op::Minus), _)) = self.infix() {
                     self.bump();
-                    items.push((next == Op::Minus, self.operators(level + 1)?));
+                    items.push((next == Op::Minus, self.operators(right)?));
                 }
                 Kind::Sum(items)
             }
-            Op::Range => Kind::Range(Box::new(left), Box::new(self.operators(level + 1)?)),
+            Op::Range => Kind::Range(Box::new(left), Box::new(self.operators(right)?)),
             Op::If => return self.condition(left, start),
-            Op::Xnor => Kind::Infix(Infix::Iff, Box::new(left), Box::new(self.operators(level + 1)?)),
-            Op::Infix(Infix::Implies) => {
-                let right = self.operators(level)?;
-                Kind::Infix(Infix::Implies, Box::new(left), Box::new(right))
-            }
-            Op::Infix(infix) => Kind::Infix(infix, Box::new(left), Box::new(self.operators(level + 1)?)),
+            Op::Xnor => Kind::Infix(Infix::Iff, Box::new(left), Box::new(self.operators(right)?)),
+            Op::Infix(infix) => Kind::Infix(infix, Box::new(left), Box::new(self.operators(right)?)),
             Op::Temporal(op) => {
                 let bounds = self.bounds()?;
-                Kind::Binary(op, bounds, Box::new(left), Box::new(self.operators(level)?))
+                Kind::Binary(op, bounds, Box::new(left), Box::new(self.operators(right)?))
             }
         };
         self.node(kind, start)
     }
 
-    fn chain(&mut self, op: Op, level: u8, first: Expr) -> Parse<Vec<Expr>> {
-        let mut items = vec![first, self.operators(level + 1)?];
+    fn chain(&mut self, op: Op, right: u8, first: Expr) -> Parse<Vec<Expr>> {
+        let mut items = vec![first, self.operators(right)?];
         while self.infix().is_some_and(|(next, _)| next == op) {
             self.bump();
-            items.push(self.operators(level + 1)?);
+            items.push(self.operators(right)?);
         }
         Ok(items)
     }
@@ -218,38 +217,40 @@ impl<'a> Parser<'a> {
         }
     }
 
-    fn infix(&self) -> Option<(Op, u8)> {
+    fn infix(&self) -> Option<(Op, Binding)> {
         let token = self.token();
         if !matches!(token.tok, Tok::Sign | Tok::Word) {
             return None;
         }
         let formula = self.paths.is_some();
-        let infix = |op, level| Some((Op::Infix(op), level));
+        let grammar = self.grammar;
+        let infix = |op, level| Some((Op::Infix(op), Binding::left(level)));
+        let bound = |op, binding| Some((op, binding));
         match token.text {
-            "->" | "=>" | "→" => infix(Infix::Implies, level::IMPLIES),
-            "<->" | "<=>" | "↔" => infix(Infix::Iff, level::IFF),
-            "?" if !formula => Some((Op::If, level::CONDITION)),
-            "|" | "||" | "\\/" | "∨" => Some((Op::Or, level::OR)),
-            "xor" => infix(Infix::Xor, level::OR),
-            "xnor" => Some((Op::Xnor, level::OR)),
-            "&" | "&&" | "/\\" | "∧" => Some((Op::And, level::AND)),
-            "U" if formula => Some((Op::Temporal(BinaryOp::Until), level::UNTIL)),
-            "R" if formula => Some((Op::Temporal(BinaryOp::Release), level::UNTIL)),
-            "W" if formula => Some((Op::Temporal(BinaryOp::WeakUntil), level::UNTIL)),
-            "M" if formula => Some((Op::Temporal(BinaryOp::StrongRelease), level::UNTIL)),
-            "=" | "==" => infix(Infix::Eq, level::COMPARE),
+            "->" | "=>" | "→" => bound(Op::Infix(Infix::Implies), grammar.implies),
+            "<->" | "<=>" | "↔" => bound(Op::Infix(Infix::Iff), grammar.iff),
+            "?" if !formula => bound(Op::If, Binding::left(level::CONDITION)),
+            "|" | "||" | "\\/" | "∨" => bound(Op::Or, grammar.or),
+            "xor" => bound(Op::Infix(Infix::Xor), grammar.xor),
+            "xnor" => bound(Op::Xnor, Binding::left(level::OR)),
+            "&" | "&&" | "/\\" | "∧" => bound(Op::And, grammar.and),
+            "U" if formula => bound(Op::Temporal(BinaryOp::Until), grammar.until),
+            "R" if formula => bound(Op::Temporal(BinaryOp::Release), grammar.release),
+            "W" if formula => bound(Op::Temporal(BinaryOp::WeakUntil), grammar.until),
+            "M" if formula => bound(Op::Temporal(BinaryOp::StrongRelease), grammar.release),
+            "=" | "==" => bound(Op::Infix(Infix::Eq), grammar.equal),
             "!=" => infix(Infix::Ne, level::COMPARE),
             "<" => infix(Infix::Lt, level::COMPARE),
             "<=" => infix(Infix::Le, level::COMPARE),
             ">" => infix(Infix::Gt, level::COMPARE),
             ">=" => infix(Infix::Ge, level::COMPARE),
             "in" => infix(Infix::In, level::IN),
-            "union" => Some((Op::Union, level::UNION)),
-            ".." => Some((Op::Range, level::RANGE)),
+            "union" => bound(Op::Union, Binding::left(level::UNION)),
+            ".." => bound(Op::Range, Binding::left(level::RANGE)),
             "<<" => infix(Infix::ShiftLeft, level::SHIFT),
             ">>" => infix(Infix::ShiftRight, level::SHIFT),
-            "+" => Some((Op::Plus, level::SUM)),
-            "-" => Some((Op::Minus, level::SUM)),
+            "+" => bound(Op::Plus, Binding::left(level::SUM)),
+            "-" => bound(Op::Minus, Binding::left(level::SUM)),
             "*" if !self.star => infix(Infix::Mul, level::PRODUCT),
             "/" => infix(Infix::Div, level::PRODUCT),
             "mod" => infix(Infix::Mod, level::PRODUCT),
@@ -286,7 +287,7 @@ impl<'a> Parser<'a> {
             (Tok::Word, "FALSE" | "false") => self.constant(false),
             (Tok::Sign, "!" | "~" | "¬") | (Tok::Word, "not") => {
                 self.bump();
-                let least = if self.paths.is_some() { level::TEMPORAL } else { level::NOT };
+                let least = if self.paths.is_some() { self.grammar.unary } else { level::NOT };
                 Kind::Not(Box::new(self.operators(least)?))
             }
             (Tok::Sign, "-") => {
@@ -315,7 +316,7 @@ impl<'a> Parser<'a> {
                 Some(op) => {
                     self.bump();
                     let bounds = if op == UnaryOp::Next { None } else { self.bounds()? };
-                    Kind::Unary(op, bounds, Box::new(self.operators(level::TEMPORAL)?))
+                    Kind::Unary(op, bounds, Box::new(self.operators(self.grammar.unary)?))
                 }
                 None => return self.named(),
             },

@@ -167,7 +167,7 @@ impl<'t> Builder<'_, 't, '_> {
                 let mut read = Vec::new();
                 let mut stack = vec![(*scope, *body, 0)];
                 while let Some((scope, e, depth)) = stack.pop() {
-                    stack.extend(e.kind.children().into_iter().map(|child| (scope, child, depth)));
+                    e.kind.for_each_child(&mut |child| stack.push((scope, child, depth)));
                     let Kind::Name(name) = &e.kind else { continue };
                     match model.meaning(scope, name) {
                         Some(Meaning::Symbol(full, _) | Meaning::Bits(full, _)) => {
@@ -369,7 +369,7 @@ impl<'t> Builder<'_, 't, '_> {
                 continue;
             }
             let (value, span) = match next.get(&full) {
-                Some((scope, value, span)) if !reads_next(value) => {
+                Some((scope, value, span)) if !value.reads_next => {
                     let place = self.place(*scope);
                     let value = self.update(place, value, &var.ty);
                     (self.note(value), *span)
@@ -482,22 +482,10 @@ fn anything(var: &Var) -> UpdateValue {
 
 /// Refuses `next` where no step is spoken of.
 fn without_next(expr: &Expr, what: &str) -> Parse<()> {
-    if !reads_next(expr) {
+    if !expr.reads_next {
         return Ok(());
     }
     let message = format!("{what} speaks of one state, and `next` of the one after it");
     let help = "`next` belongs into `TRANS`, and to the right of `next(x) :=`";
     crate::lower::wrong_with("misplaced-next", expr.span, message, help)
-}
-
-/// Whether an expression speaks of the state after a step.
-fn reads_next(expr: &Expr) -> bool {
-    let mut stack = vec![expr];
-    while let Some(expr) = stack.pop() {
-        if matches!(expr.kind, Kind::Next(_)) {
-            return true;
-        }
-        stack.extend(expr.kind.children());
-    }
-    false
 }

@@ -4,41 +4,54 @@ use hyperplan_syntax::Span;
 use hyperplan_syntax::ast::{BinaryOp, Ident, UnaryOp};
 
 /// An expression or formula with its place.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Expr {
     pub(crate) kind: Kind,
     pub(crate) span: Span,
     /// Of the tree.
     pub(crate) height: u32,
+    /// Whether it speaks of the state after a step.
+    pub(crate) reads_next: bool,
 }
 
 impl Expr {
     pub(crate) fn new(kind: Kind, span: Span) -> Expr {
-        let height = 1 + kind.children().into_iter().map(|child| child.height).max().unwrap_or(0);
-        Expr { kind, span, height }
+        let (mut height, mut reads_next) = (0, matches!(kind, Kind::Next(_)));
+        kind.for_each_child(&mut |child| {
+            height = height.max(child.height);
+            reads_next |= child.reads_next;
+        });
+        Expr { kind, span, height: height + 1, reads_next }
     }
 }
 
 impl Kind {
-    /// Direct parts, those in names too.
-    pub(crate) fn children(&self) -> Vec<&Expr> {
+    /// Calls a function with each direct part, those in names too.
+    pub(crate) fn for_each_child<'e>(&'e self, each: &mut dyn FnMut(&'e Expr)) {
         match self {
-            Kind::Bool(_) | Kind::Int(_) | Kind::Word(..) => Vec::new(),
-            Kind::Name(name) => name.access.iter().flat_map(Access::parts).collect(),
-            Kind::Next(a) | Kind::At(a, _) | Kind::Not(a) | Kind::Neg(a) | Kind::Unary(_, _, a) => vec![a],
+            Kind::Bool(_) | Kind::Int(_) | Kind::Word(..) => {}
+            Kind::Name(name) => name.access.iter().for_each(|access| access.for_each_part(each)),
+            Kind::Next(a) | Kind::At(a, _) | Kind::Not(a) | Kind::Neg(a) | Kind::Unary(_, _, a) => each(a),
             Kind::And(es) | Kind::Or(es) | Kind::Union(es) | Kind::Set(es) | Kind::Call(_, es) => {
-                es.iter().collect()
+                es.iter().for_each(each);
             }
-            Kind::Sum(es) => es.iter().map(|(_, e)| e).collect(),
-            Kind::Infix(_, a, b) | Kind::Range(a, b) | Kind::Binary(_, _, a, b) => vec![a, b],
+            Kind::Sum(es) => es.iter().for_each(|(_, e)| each(e)),
+            Kind::Infix(_, a, b) | Kind::Range(a, b) | Kind::Binary(_, _, a, b) => {
+                each(a);
+                each(b);
+            }
             Kind::Case(branches, last) => {
-                branches.iter().flat_map(|(c, a)| [c, a]).chain([&**last]).collect()
+                for (condition, value) in branches {
+                    each(condition);
+                    each(value);
+                }
+                each(last);
             }
         }
     }
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Kind {
     Bool(bool),
     Int(i64),
@@ -91,13 +104,13 @@ impl Word {
 }
 
 /// `a.b[1].c[7:0]`
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Name {
     pub(crate) base: String,
     pub(crate) access: Vec<Access>,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Access {
     Dot(String),
     Index(Expr),
@@ -105,11 +118,14 @@ pub(crate) enum Access {
 }
 
 impl Access {
-    fn parts(&self) -> Vec<&Expr> {
+    fn for_each_part<'e>(&'e self, each: &mut dyn FnMut(&'e Expr)) {
         match self {
-            Access::Dot(_) => Vec::new(),
-            Access::Index(at) => vec![at],
-            Access::Bits(high, low) => vec![high, low],
+            Access::Dot(_) => {}
+            Access::Index(at) => each(at),
+            Access::Bits(high, low) => {
+                each(high);
+                each(low);
+            }
         }
     }
 }
@@ -187,7 +203,7 @@ pub(crate) enum TypeKind {
 }
 
 /// A formula of another tool: its quantifiers and what they say.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Formula {
     /// Whether universal, and the path.
     pub(crate) quantifiers: Vec<(bool, Ident)>,

@@ -1,6 +1,6 @@
 //! The files of `specs/import`: what they become, and what is said of bad ones. `UPDATE=1` writes it anew.
 
-use hyperplan_import::{Imported, Input, Options, import};
+use hyperplan_import::{Dialect, Imported, Input, Known, Options, import};
 use hyperplan_problem::{NoFiles, Overrides, lower, read};
 use hyperplan_syntax::{Diagnostic, SourceMap, print, render};
 use std::fs;
@@ -24,7 +24,7 @@ fn imported(model: &Path, sources: &mut SourceMap) -> Imported {
         let name = path.file_name().expect("it has a name").to_string_lossy().into_owned();
         inputs.push(Input { name, text });
     }
-    import(&inputs, &Options { bound: Some(6), semantics: None }, sources)
+    import(&inputs, &Options { bound: Some(6), ..Options::default() }, sources)
 }
 
 fn same(expected: &Path, found: &str) {
@@ -154,4 +154,73 @@ fn definitions_are_shared() {
     }
     text += " ASSIGN next(x) := s59;";
     assert_eq!(only_error(&text, "exists A. x[A] = 0", &Options::default()).0, "too-large");
+}
+
+/// A formula as it is read, and the codes of what is said of it.
+fn read_formula(formula: &str, options: Options) -> (String, Vec<&'static str>) {
+    let model = "MODULE main VAR a : boolean; b : boolean; c : boolean; DEFINE d := TRUE;";
+    let input = |name: &str, text: &str| Input { name: name.to_owned(), text: text.to_owned() };
+    let inputs = [input("m.smv", model), input("f.hq", formula)];
+    let imported = import(&inputs, &Options { bound: Some(6), ..options }, &mut SourceMap::new());
+    let text = format!("{}{}", imported.about, print(&imported.file, ""));
+    let start = text.find("objective").unwrap_or(text.len());
+    let last = text[start..].lines().filter(|line| !line.trim().is_empty() && line.trim() != "}").last();
+    let codes = imported.diagnostics.iter().map(|diagnostic| diagnostic.code).collect();
+    (last.unwrap_or_default().trim().trim_end_matches(';').to_owned(), codes)
+}
+
+#[test]
+fn languages_bind_operators_in_their_own_way() {
+    use Dialect::{AutoHyper, HyperLasso, HyperQb1, HyperQb2};
+    for (text, dialect, same_as, told) in [
+        // As NuSMV, where nothing tells the languages apart.
+        ("exists A. a[A] -> b[A] <-> c[A]", None, "a[A] -> (b[A] <-> c[A])", false),
+        ("exists A. a[A] -> b[A] <-> c[A]", Some(HyperLasso), "a[A] -> (b[A] <-> c[A])", false),
+        ("exists A. a[A] -> b[A] <-> c[A]", Some(AutoHyper), "(a[A] -> b[A]) <-> c[A]", true),
+        ("exists A. {a}_A -> {b}_A <-> {c}_A", None, "(a[A] -> b[A]) <-> c[A]", true),
+        ("exists A. {a}_A -> {b}_A -> {c}_A", None, "(a[A] -> b[A]) -> c[A]", true),
+        ("exists A. {a}_A U {b}_A U {c}_A", None, "(a[A] U b[A]) U c[A]", true),
+        ("exists A. ({a}_A -> {b}_A) & !{c}_A | {a}_A", None, "((a[A] -> b[A]) & !c[A]) | a[A]", false),
+        ("exists A. a[A] /\\ b[A] \\/ c[A]", None, "a[A] & (b[A] | c[A])", true),
+        ("exists A. a[A] \\/ b[A] -> c[A]", None, "a[A] | (b[A] -> c[A])", true),
+        ("exists A. a[A] /\\ b[A] \\/ c[A]", Some(HyperLasso), "(a[A] & b[A]) | c[A]", false),
+        ("exists A. G(*a[A]=1* <-> *b[A]=1*) /\\ F(c[A])", None, "G(a[A] <-> b[A]) & F(c[A])", false),
+        ("Exists A . a[A] = b[A] & c[A]", None, "a[A] <-> (b[A] & c[A])", true),
+        ("exists A . a[A] = b[A] & c[A]", None, "(a[A] <-> b[A]) & c[A]", false),
+        ("exists A . a[A] = b[A] & c[A]", Some(HyperQb2), "a[A] <-> (b[A] & c[A])", true),
+        ("Exists A . ~a[A] = b[A]", None, "(!a[A]) <-> b[A]", true),
+        ("Exists A . a[A] U b[A] R c[A]", None, "a[A] U (b[A] R c[A])", false),
+        ("Exists A . a[A] R b[A] U c[A]", None, "(a[A] R b[A]) U c[A]", true),
+        ("Exists A . (a[A] = b[A]) & ~(c[A])", None, "(a[A] <-> b[A]) & !c[A]", false),
+        ("exists A. a[A] /\\ (b[A] \\/ c[A])", Some(HyperQb1), "a[A] & (b[A] | c[A])", false),
+    ] {
+        let (read, codes) = read_formula(text, Options { dialect, ..Options::default() });
+        let (expected, _) = read_formula(&format!("exists A. {same_as}"), Options::default());
+        assert_eq!(read, expected, "{text}");
+        assert_eq!(codes == ["other-precedence"], told, "{text}: {codes:?}");
+    }
+    assert_eq!(read_formula("Exists A . a[A] = b[A] |", Options::default()).1, ["syntax"]);
+}
+
+#[test]
+fn comments_of_formulas_say_what_is_known() {
+    let about = |formula: &str, status, semantics: Option<&str>| {
+        let options =
+            Options { bound: Some(6), status, semantics: semantics.map(str::to_owned), ..Options::default() };
+        let model = "MODULE main VAR a : boolean;";
+        let input = |name: &str, text: &str| Input { name: name.to_owned(), text: text.to_owned() };
+        let inputs = [input("m.smv", model), input("f.hq", formula)];
+        let imported = import(&inputs, &options, &mut SourceMap::new());
+        let codes: Vec<&str> = imported.diagnostics.iter().map(|diagnostic| diagnostic.code).collect();
+        let known =
+            imported.about.lines().find_map(|line| line.strip_prefix("// f: ").filter(|w| *w != "f.hq"));
+        (known.map(str::to_owned), codes)
+    };
+    let formula = "-- within 6: holds\n// within 9: violated\n-- within 6 semantics pes: unrealizable\nexists A. F a[A]";
+    assert_eq!(about(formula, None, None), (Some("realizable".to_owned()), vec![]));
+    assert_eq!(about(formula, None, Some("pes")), (Some("unrealizable".to_owned()), vec![]));
+    assert_eq!(about(formula, None, Some("opt")), (None, vec![]));
+    assert_eq!(about(formula, Some(Known::Realizable), None), (Some("realizable".to_owned()), vec![]));
+    assert_eq!(about(formula, Some(Known::Unrealizable), None).1, ["contradictory-status"]);
+    assert_eq!(about("exists A. F a[A]", Some(Known::Unrealizable), None).0, Some("unrealizable".to_owned()));
 }

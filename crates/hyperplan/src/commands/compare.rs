@@ -9,6 +9,7 @@ use crate::instances::instances;
 use crate::output::Output;
 use crate::progress::Progress;
 use crate::signals;
+use crate::tables;
 use hyperplan_compare::benchexec::{Configuration, Problem};
 use hyperplan_compare::plan::{Candidate, Instance, Kind, Run, Ways, count, plan, sha256};
 use hyperplan_compare::report::write_all;
@@ -32,7 +33,8 @@ pub(crate) fn run(args: &args::Compare, verbose: bool, out: &mut Output) -> Resu
     }
     let mut ways = ways(args)?;
     let solvers = candidates(args.solver.as_deref(), out)?;
-    let instances = instances(args, out)?;
+    let files = tables::imported(args, out)?;
+    let instances = instances(&files, args, out)?;
     if let Some(folder) = &args.benchexec {
         return benchexec(folder, &instances, &solvers, &ways, out);
     }

@@ -5,8 +5,10 @@ use crate::config;
 use crate::explain::{Explain, Why};
 use crate::failure::{Exit, Failure, Result};
 use crate::files::write_bytes;
+use crate::foreign::Foreign;
 use crate::guard;
 use crate::load::Loaded;
+use crate::nusmv;
 use crate::output::Output;
 use crate::parameter::Searched;
 use crate::plans;
@@ -79,7 +81,8 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
         let own = own.or(open.undecided.as_ref()).map(|reason| Why::new(reason, explain));
         let why = own.as_ref().or_else(|| searched?.undecided.as_ref());
         let answer = answer(loaded, objective, &outcome, (searched, open.costs), why, total);
-        let found = Found { loaded, objective, outcome: &outcome, answer: &answer, searched };
+        let foreign = args.problem.foreign.as_ref();
+        let found = Found { loaded, objective, outcome: &outcome, answer: &answer, searched, foreign };
         if let Some(path) = &config.save {
             // Before anything else that may fail.
             saved = match PlanFormat::of_file(path) {
@@ -115,8 +118,8 @@ fn check_formats(
     objectives: &[&Objective],
 ) -> Result<()> {
     let printed = plan_format(args.format);
-    if objectives.len() > 1 && printed.is_some() {
-        let message = "--format csv, ros, geojson and pddl print the strategy of one objective; choose it by --objective NAME, or \
+    if objectives.len() > 1 && (printed.is_some() || args.format == SolveFormat::Nusmv) {
+        let message = "--format csv, ros, geojson, pddl and nusmv print the strategy of one objective; choose it by --objective NAME, or \
                        --save FILE with such an ending for a file each";
         return Err(Failure::input(message));
     }
@@ -132,7 +135,7 @@ fn check_formats(
 /// The format of strategies for other programs, if it is one.
 fn plan_format(format: SolveFormat) -> Option<PlanFormat> {
     match format {
-        SolveFormat::Text | SolveFormat::Json => None,
+        SolveFormat::Text | SolveFormat::Json | SolveFormat::Nusmv => None,
         SolveFormat::Csv => Some(PlanFormat::Csv),
         SolveFormat::Ros => Some(PlanFormat::Ros),
         SolveFormat::Geojson => Some(PlanFormat::Geojson),
@@ -280,6 +283,8 @@ struct Found<'a> {
     outcome: &'a plan::Outcome,
     answer: &'a Answer,
     searched: Option<&'a Searched>,
+    /// The files of another tool, if it was these.
+    foreign: Option<&'a Foreign>,
 }
 
 impl<'a> Found<'a> {
@@ -302,6 +307,13 @@ impl<'a> Found<'a> {
                 out.remark(self.verdict_line());
                 let Some(paths) = self.plan() else { return Ok(()) };
                 out.verbatim(&self.written(format, &paths)?)
+            }
+            (None, SolveFormat::Nusmv) => {
+                out.remark(self.verdict_line());
+                let Some(paths) = &self.answer.witness else { return Ok(()) };
+                let refutes = self.answer.verdict == Verdict::Unrealizable;
+                let name = &self.objective.name;
+                out.verbatim(&nusmv::traces(name, refutes, paths, &nusmv::originals(self.foreign)))
             }
             (None, SolveFormat::Json) => out.line(json(self.answer)?),
             (None, _) if quiet => out.line(self.verdict_line()),
@@ -331,10 +343,13 @@ impl<'a> Found<'a> {
         if let Some(searched) = self.searched {
             return format!("{}: {}", self.objective.name, one_line(&searched.words));
         }
-        let verdict = match self.answer.verdict {
-            Verdict::Realizable => "realizable",
-            Verdict::Unrealizable => "unrealizable",
-            Verdict::Unknown => "unknown",
+        // Users of verifiers have words of their own.
+        let verdict = match (self.answer.verdict, self.foreign) {
+            (Verdict::Realizable, None) => "realizable",
+            (Verdict::Realizable, Some(_)) => "realizable (holds)",
+            (Verdict::Unrealizable, None) => "unrealizable",
+            (Verdict::Unrealizable, Some(_)) => "unrealizable (violated)",
+            (Verdict::Unknown, _) => "unknown",
         };
         if !self.answer.costs.is_empty() {
             return format!("{}: {verdict} with {}", self.objective.name, self.costs());

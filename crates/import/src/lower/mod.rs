@@ -10,15 +10,17 @@ mod sets;
 mod symbols;
 mod words;
 
+use crate::Original;
 use crate::names::Names;
 use crate::parser::Parse;
 use crate::smv::model::{Model, ScopeId, Symbol, Ty, suggest};
 use crate::smv::resolve::Meaning;
-use crate::tree::{Access, Expr, Infix, Kind, Name, Word};
+use crate::tree::{Access, Expr, Infix, Kind, Name, Role, Word};
 use hyperplan_syntax::ast::{self, CompareOp, ExprKind, Ident, Interval};
 use hyperplan_syntax::{Diagnostic, Span};
 use rustc_hash::FxHashMap;
 pub(crate) use sets::Choice;
+use std::collections::BTreeMap;
 use std::rc::Rc;
 pub(crate) use symbols::Symbolic;
 
@@ -70,6 +72,20 @@ impl<'t> Named<'t> {
         let readable = model.symbols.iter().filter(|(_, s)| matches!(s, Symbol::Var(_) | Symbol::Define(..)));
         let names = readable.map(|(name, _)| (name.clone(), given.name(name))).collect();
         Named { model, names, defined: FxHashMap::default() }
+    }
+
+    /// What variables are in the original.
+    pub(crate) fn originals(&self) -> BTreeMap<String, Original> {
+        let original = |(full, symbol): (&String, &Symbol<'t>)| {
+            let Symbol::Var(var) = symbol else { return None };
+            let word = match var.ty {
+                Ty::Word(word) => Some((word.signed, word.width)),
+                _ => None,
+            };
+            let input = var.role == Role::Input;
+            Some((self.names.get(full)?.clone(), Original { name: full.clone(), word, input }))
+        };
+        self.model.symbols.iter().filter_map(original).collect()
     }
 }
 
