@@ -2,9 +2,9 @@
 
 use crate::args::{Cli, Command, Plan, Reading};
 use crate::failure::{Failure, Result};
-use crate::files::{self, read_source};
+use crate::files::{self, read_bytes, read_source, reason};
 use crate::foreign::Foreign;
-use hyperplan_import::{Input, Kind, Options};
+use hyperplan_import::{Input, Kind, Options, ascii};
 use hyperplan_outlet::one_line;
 use std::path::{Path, PathBuf};
 
@@ -63,28 +63,42 @@ fn one_strategy(plan: &Plan, model: bool) -> Result<()> {
     Ok(())
 }
 
-/// The kind of a file of another tool.
-pub(crate) fn kind(path: &Path) -> Option<Kind> {
-    Kind::of(path.to_str()?)
+/// Whether a file is one of another tool.
+pub(crate) fn is_foreign(path: &Path) -> bool {
+    // How a file begins decides where its name does not; one that cannot be read is told of where it is used.
+    let begins = || {
+        read_bytes(path).map(|bytes| String::from_utf8_lossy(&bytes[..bytes.len().min(4096)]).into_owned())
+    };
+    let by_content = path.extension().is_some_and(|ending| ending == "txt");
+    let text = if by_content { begins().unwrap_or_default() } else { String::new() };
+    path.to_str().and_then(|name| Kind::of(name, &text)).is_some()
+}
+
+/// The text of a file of another tool.
+fn text(path: &Path) -> Result<String> {
+    if path.extension().is_none_or(|ending| ending != "aig") {
+        return read_source(path);
+    }
+    let cannot = |why: String| Failure::input(format_args!("cannot read {}: {why}", path.display()));
+    ascii(&read_bytes(path).map_err(|error| cannot(reason(&error)))?).map_err(cannot)
 }
 
 /// The models and formulas among what was given as strategies.
 fn behind(plan: &mut Plan) -> Vec<PathBuf> {
     let (more, strategies) =
-        std::mem::take(&mut plan.strategy).into_iter().partition(|path| kind(path).is_some());
+        std::mem::take(&mut plan.strategy).into_iter().partition(|path| is_foreign(path));
     plan.strategy = strategies;
     more
 }
 
 fn found(file: &Path, more: &mut Vec<PathBuf>, reading: &Reading) -> Result<Option<Foreign>> {
     let all: Vec<PathBuf> = std::mem::take(more);
-    let own = kind(file);
-    if own.is_none() {
+    if !is_foreign(file) {
         return match (all.first(), reading.bound) {
             (Some(other), _) => {
                 let (file, other) = (files::name(file), files::name(other));
                 Err(Failure::input(format_args!(
-                    "{other} cannot be read together with {file}: only models (.smv) and formulas (.hq) of other tools \
+                    "{other} cannot be read together with {file}: only models (.smv, .aag, .aig, .txt) and formulas (.hq) of other tools \
                      are several files"
                 )))
             }
@@ -119,14 +133,14 @@ pub(crate) fn known_semantics(what: &str, semantics: &str) -> Result<()> {
 pub(crate) fn together<'p>(files: impl Iterator<Item = &'p Path>, options: Options) -> Result<Foreign> {
     let mut inputs = Vec::new();
     for path in files {
-        if kind(path).is_none() {
+        if !is_foreign(path) {
             let name = files::name(path);
             return Err(Failure::input(format_args!(
-                "{name} is neither a model (.smv) nor a formula (.hq) of another tool"
+                "{name} is neither a model (.smv, .aag, .aig, .txt) nor a formula (.hq) of another tool"
             )));
         }
         let name = one_line(&path.display().to_string()).into_owned();
-        inputs.push(Input { name, text: read_source(path)? });
+        inputs.push(Input { name, text: text(path)? });
     }
     Ok(Foreign { inputs, options })
 }

@@ -26,7 +26,7 @@ impl Loaded {
     /// Reads a problem file; its errors and warnings are printed.
     pub(crate) fn read(args: &args::Problem, out: &Output) -> Result<Loaded> {
         let start = Instant::now();
-        let text = read_source(&args.file)?;
+        let text = text(args)?;
         Self::with_consts(args, &text, start, out).map(|(loaded, _)| loaded)
     }
 
@@ -102,6 +102,11 @@ impl Loaded {
             None => line,
         }
     }
+}
+
+/// The text of a problem file; those of other tools were read before.
+pub(crate) fn text(args: &args::Problem) -> Result<String> {
+    if args.foreign.is_some() { Ok(String::new()) } else { read_source(&args.file) }
 }
 
 /// Constants with their values.

@@ -3,7 +3,6 @@
 use crate::args::{self, Minimize};
 use crate::explain::{Explain, Why};
 use crate::failure::{Failure, Result};
-use crate::files::read_source;
 use crate::load::{self, Loaded};
 use crate::output::Output;
 use hyperplan_plan::{self as plan, Config, Least, MinimizeError, Verdict, minimize};
@@ -34,7 +33,7 @@ impl<'a> Parameter<'a> {
     ) -> Result<(Self, Loaded)> {
         let constant = wanted.constant.as_str();
         let start = Instant::now();
-        let text = read_source(&args.file)?;
+        let text = load::text(args)?;
         let mut sources = SourceMap::new();
         let source = sources.add(args.file.display().to_string(), text.as_str());
         let (file, _) = parse(source, &text);

@@ -5,7 +5,7 @@ use crate::args;
 use crate::failure::{Failure, Result};
 use crate::files::{cannot_write, read_source, write_bytes};
 use crate::foreign::{Foreign, text};
-use crate::gather::{kind, known_semantics, options, together};
+use crate::gather::{is_foreign, known_semantics, options, together};
 use crate::output::Output;
 use crate::report;
 use hyperplan_import::{Known, Options};
@@ -20,7 +20,7 @@ const FOLDER: &str = "imported";
 /// The files of a comparison, with problem files in place of models, formulas and tables.
 pub(crate) fn imported(args: &args::Compare, out: &Output) -> Result<Vec<String>> {
     let is_table = |name: &String| Path::new(name).extension().is_some_and(|ending| ending == "tsv");
-    let is_foreign = |name: &String| kind(Path::new(name)).is_some();
+    let is_foreign = |name: &String| is_foreign(Path::new(name));
     let mut entries = Vec::new();
     let direct: Vec<PathBuf> = args.files.iter().filter(|name| is_foreign(name)).map(PathBuf::from).collect();
     if direct.is_empty() && args.reading.bound.is_some() {

@@ -2,8 +2,7 @@
 
 use crate::args;
 use crate::failure::{Failure, Result};
-use crate::files::read_source;
-use crate::load::{Consts, Loaded};
+use crate::load::{self, Consts, Loaded};
 use crate::output::Output;
 use crate::parameter::Parameter;
 use crate::report::WIDTH;
@@ -44,7 +43,7 @@ impl<'a> Wish<'a> {
             return Err(failure(&sources, &errors));
         }
         let start = Instant::now();
-        let file = read_source(&args.problem.file)?;
+        let file = load::text(&args.problem)?;
         let (loaded, consts) = Loaded::with_consts(&args.problem, &file, start, out)?;
         Ok((Wish::Costs { exprs, consts, sources }, loaded))
     }

@@ -233,3 +233,36 @@ fn verifiers_have_their_words_and_traces() {
     let run = hyperplan(&["solve", "rooms.hp", "--objective", "sp", "--format", "nusmv"]);
     assert!(run.stdout.contains("Input: 1.2 <-\n    action = "), "{}", run.stdout);
 }
+
+#[test]
+fn circuits_systems_and_programs_are_models_too() {
+    for (model, holds) in
+        [("circuit.aag", true), ("explicit.txt", false), ("values.txt", true), ("program.txt", true)]
+    {
+        let model = format!("import/pass/{model}");
+        let stem = model.rsplit_once('.').expect("it has an ending").0;
+        let run = hyperplan(&["solve", &model, &format!("{stem}.hq"), "--bound", "6", "--quiet"]);
+        assert_eq!(run.status, i32::from(!holds), "{model}: {}{}", run.stdout, run.stderr);
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let circuit = folder.path().join("toggle.aig");
+    // The latch 4 becomes what the input 2 and its opposite say: 6 = 2 & !4.
+    std::fs::write(&circuit, b"aig 3 1 1 1 1\n6\n4\n\x01\x03i0 go\no0 on\n").expect("it can be written");
+    let formula = folder.path().join("f.hq");
+    std::fs::write(&formula, "Exists (And (X (AP \"on\" 0)) (X (X (Neg (AP \"on\" 0)))))")
+        .expect("it can be written");
+    let files = [text(&circuit), text(&formula)];
+    let plan = folder.path().join("plan.json");
+    let solve = ["solve", files[0], files[1], "--bound", "3", "--quiet", "--save", text(&plan)];
+    let run = hyperplan(&solve);
+    assert_eq!(run.status, 0, "{}{}", run.stdout, run.stderr);
+    for command in [&["check"][..], &["emit", "--status", "unknown"], &["horizon"], &["import"]] {
+        let run = hyperplan(&[command, &files[..], &["--bound", "3"]].concat());
+        assert_eq!(run.status, 0, "{command:?}: {}{}", run.stdout, run.stderr);
+    }
+    let run = hyperplan(&["verify", files[0], files[1], text(&plan), "--bound", "3"]);
+    assert_eq!(run.status, 0, "{}{}", run.stdout, run.stderr);
+    std::fs::write(&circuit, b"aig 3 1 1 1 1\n6\n4\n\x09").expect("it can be written");
+    let run = hyperplan(&solve);
+    assert!(run.status == 2 && run.stderr.contains("toggle.aig: byte"), "{}", run.stderr);
+}

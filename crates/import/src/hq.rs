@@ -4,6 +4,7 @@
 
 use crate::dialect::{Dialect, USUAL};
 use crate::lexer::{Tok, lex};
+use crate::mchyper;
 use crate::parser::{Parse, Parser};
 use crate::tree::Formula;
 use hyperplan_syntax::{Diagnostic, SourceId};
@@ -16,6 +17,9 @@ pub(crate) fn parse(
     dialect: Option<Dialect>,
 ) -> Parse<(Formula, Option<Diagnostic>)> {
     let tokens = lex(source, text)?;
+    if mchyper::is_written_so(&tokens) {
+        return Ok((mchyper::parse(Parser::new(tokens))?, None));
+    }
     let usual = formula(Parser::of(tokens.clone(), &USUAL));
     let Some(own) = dialect.or_else(|| Dialect::of(&tokens)) else { return Ok((usual?, None)) };
     let read = formula(Parser::of(tokens, own.grammar()));

@@ -1,23 +1,29 @@
-//! Files of other tools as problems: models in SMV, as NuSMV and its relatives write it, and formulas of HyperQB 1 and
-//! 2.0, HyperLasso and AutoHyper.
+//! Files of other tools as problems: models in SMV, as NuSMV and its relatives write it, circuits in AIGER, AutoHyper's
+//! explicit systems and Boolean programs; formulas of HyperQB 1 and 2.0, HyperLasso, AutoHyper and MCHyper.
 //!
 //! What comes out is a syntax tree of the problem language whose places are those of the original files, so that
 //! whatever is found wrong with it later is shown where it was written. No file is read here.
 //!
 //! `lexer` and `parser` read models and formulas alike; `smv` puts modules together; `lower` turns expressions into those
-//! of the problem language, `system` models into systems.
+//! of the problem language, `system` models into systems. Models in other forms than SMV become modules of it (`build`).
 
+mod aiger;
+mod build;
 mod dialect;
+mod explicit;
 mod hq;
 mod known;
 mod lexer;
 mod lower;
+mod mchyper;
 mod names;
 mod parser;
+mod program;
 mod smv;
 mod system;
 mod tree;
 
+pub use aiger::ascii;
 pub use dialect::Dialect;
 use hyperplan_syntax::ast::{
     self, Expr, ExprKind, File, Formula, Ident, Item, Objective, ObjectiveBody, Quantifier,
@@ -30,24 +36,58 @@ use names::Names;
 use smv::model::Model;
 use std::collections::BTreeMap;
 
-/// What kind of file it is, by its name.
+/// What kind of file it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A model in SMV.
-    Model,
+    Smv,
+    /// A circuit in AIGER.
+    Aiger,
+    /// An explicit system of AutoHyper.
+    Explicit,
+    /// A Boolean program of AutoHyper.
+    Program,
     /// A formula.
     Formula,
 }
 
 impl Kind {
-    /// The kind of a file with that name, if it is one that is read here.
+    /// The kind of a file, by its name; where that ends with `.txt`, by how it begins.
     #[must_use]
-    pub fn of(name: &str) -> Option<Kind> {
+    pub fn of(name: &str, text: &str) -> Option<Kind> {
         match name.rsplit_once('.')?.1 {
-            "smv" | "nusmv" => Some(Kind::Model),
+            "smv" | "nusmv" => Some(Kind::Smv),
+            "aag" | "aig" => Some(Kind::Aiger),
             "hq" => Some(Kind::Formula),
+            "txt" => Kind::of_text(text),
             _ => None,
         }
+    }
+
+    fn of_text(text: &str) -> Option<Kind> {
+        let word = |c: char| c.is_alphanumeric() || c == '_';
+        let line = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with("--"))?;
+        let (first, rest) = line.split_at(line.find(|c| !word(c)).unwrap_or(line.len()));
+        match (first.to_lowercase().as_str(), rest.trim_start()) {
+            ("forall" | "exists", _) => Some(Kind::Formula),
+            ("ap" | "variables", rest) if rest.starts_with(':') => Some(Kind::Explicit),
+            (_, rest) if !first.is_empty() && rest.starts_with(':') && rest.ends_with(';') => {
+                Some(Kind::Program)
+            }
+            _ => None,
+        }
+    }
+
+    /// The modules of a model's text, as far as they can be read, and what is wrong.
+    fn modules(self, source: SourceId, text: &str) -> (Vec<tree::Module>, Vec<Diagnostic>) {
+        let read = match self {
+            Kind::Smv => return smv::parser::parse(source, text),
+            Kind::Aiger => aiger::parse(source, text),
+            Kind::Explicit => explicit::parse(source, text),
+            Kind::Program => program::parse(source, text),
+            Kind::Formula => Ok(Vec::new()),
+        };
+        read.map_or_else(|error| (Vec::new(), vec![*error]), |modules| (modules, Vec::new()))
     }
 }
 
@@ -108,16 +148,16 @@ pub fn import(inputs: &[Input], options: &Options, sources: &mut SourceMap) -> I
     let mut imported = Imported::default();
     let ids: Vec<SourceId> =
         inputs.iter().map(|input| sources.add(input.name.clone(), input.text.as_str())).collect();
-    let of_kind = |kind| {
-        let all = inputs.iter().zip(&ids).filter(move |(input, _)| Kind::of(&input.name) == Some(kind));
-        all.map(|(input, id)| (input, *id)).collect::<Vec<_>>()
-    };
-    let (models, formulas) = (of_kind(Kind::Model), of_kind(Kind::Formula));
-    let mut distinct: Vec<(&Input, SourceId)> = Vec::new();
+    let files = inputs
+        .iter()
+        .zip(&ids)
+        .filter_map(|(input, id)| Some((Kind::of(&input.name, &input.text)?, input, *id)));
+    let (formulas, models): (Vec<_>, Vec<_>) = files.partition(|(kind, ..)| *kind == Kind::Formula);
+    let mut distinct: Vec<(Kind, &Input, SourceId)> = Vec::new();
     let numbers: Vec<usize> = models
         .iter()
         .map(|model| {
-            distinct.iter().position(|(known, _)| known.name == model.0.name).unwrap_or_else(|| {
+            distinct.iter().position(|(_, known, _)| known.name == model.1.name).unwrap_or_else(|| {
                 distinct.push(*model);
                 distinct.len() - 1
             })
@@ -126,8 +166,8 @@ pub fn import(inputs: &[Input], options: &Options, sources: &mut SourceMap) -> I
     let found = &mut imported.diagnostics;
     let modules: Vec<_> = distinct
         .iter()
-        .map(|(input, id)| {
-            let (modules, wrong) = smv::parser::parse(*id, &input.text);
+        .map(|(kind, input, id)| {
+            let (modules, wrong) = kind.modules(*id, &input.text);
             found.extend(wrong);
             modules
         })
@@ -143,7 +183,7 @@ pub fn import(inputs: &[Input], options: &Options, sources: &mut SourceMap) -> I
     let mut lower = Lower::new(named);
     let mut given = Names::default();
     let mut systems: Vec<Ident> = Vec::new();
-    for (at, (input, _)) in distinct.iter().enumerate() {
+    for (at, (_, input, _)) in distinct.iter().enumerate() {
         let name = given.name(stem(&input.name));
         imported.about += &format!("// {name}: {}\n", input.name);
         let name = Ident { name, span: lower.models[at].model.span };
@@ -153,7 +193,7 @@ pub fn import(inputs: &[Input], options: &Options, sources: &mut SourceMap) -> I
         imported.file.items.push(Item::System(system));
     }
     let mut given = Names::default();
-    for (input, id) in formulas {
+    for (_, input, id) in formulas {
         let name = given.name(stem(&input.name));
         imported.about += &format!("// {name}: {}\n", input.name);
         let known = Known::of(id, &input.text, options);

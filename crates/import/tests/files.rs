@@ -10,7 +10,9 @@ fn models(folder: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs/import").join(folder);
     let mut found: Vec<PathBuf> =
         fs::read_dir(folder).expect("it is there").map(|e| e.expect("a file").path()).collect();
-    found.retain(|path| path.extension().is_some_and(|ending| ending == "smv"));
+    found.retain(|path| {
+        path.extension().is_some_and(|ending| ["smv", "aag", "txt"].iter().any(|e| ending == *e))
+    });
     found.sort();
     assert!(!found.is_empty());
     found

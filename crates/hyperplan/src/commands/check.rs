@@ -3,9 +3,8 @@
 use crate::args;
 use crate::config;
 use crate::failure::{Exit, Result};
-use crate::files::read_source;
 use crate::foreign;
-use crate::load::Loaded;
+use crate::load::{self, Loaded};
 use crate::output::Output;
 use crate::report;
 use hyperplan_outlet::one_line;
@@ -16,7 +15,7 @@ use hyperplan_syntax::{SourceId, parse, print, to_json};
 pub(crate) fn run(args: &args::Check, verbose: bool, out: &mut Output) -> Result {
     let deadline = config::deadline(args.limit.timeout, None)?;
     let file = args.problem.file.display().to_string();
-    let source = read_source(&args.problem.file)?;
+    let source = load::text(&args.problem)?;
     let (lowered, sources) = Loaded::lower(&args.problem, &source);
     let good = !lowered.has_errors();
     if args.print {

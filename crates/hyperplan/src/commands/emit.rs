@@ -5,8 +5,8 @@ use crate::config;
 use crate::configuration::Configured;
 use crate::explain::Explain;
 use crate::failure::{Exit, Failure, Result};
-use crate::files::{self, cannot_write, check_writable, read_source};
-use crate::load::{Consts, Loaded};
+use crate::files::{self, cannot_write, check_writable};
+use crate::load::{self, Consts, Loaded};
 use crate::output::Output;
 use hyperplan_outlet::one_line;
 use hyperplan_plan::{EmitConfig, Emitted, Limits, Quantifiers, States, emit};
@@ -19,12 +19,13 @@ const MOST_VALUES: i64 = 100_000;
 
 pub(crate) fn run(args: &args::Emit, file: &Path, out: &mut Output) -> Result {
     let common = common(args, &config::date(args.date.as_deref())?, out)?;
-    let text = read_source(file)?;
+    let whole = args::Problem { file: file.to_owned(), set: Vec::new(), foreign: args.foreign.clone() };
+    let text = load::text(&whole)?;
     let (mut target, mut worst) = (None, Exit::Good);
     for setting in settings(args)? {
         let mut set = args.set.clone();
         set.extend(setting.clone());
-        let problem = args::Problem { file: file.to_owned(), set, foreign: args.foreign.clone() };
+        let problem = args::Problem { set, ..whole.clone() };
         let (loaded, consts) = Loaded::with_consts(&problem, &text, Instant::now(), out)?;
         let objectives = loaded.selected(args.selection.objective.as_deref(), false)?;
         let several = objectives.len() > 1 || setting.is_some() || encodings(args).count() > 1;
