@@ -73,7 +73,7 @@ pub(crate) enum SolveFormat {
 /// A problem file and how to read it.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct Problem {
-    /// The problem file (.hp); `-` is standard input. Or a model of another tool (.smv, .aag, .aig, .txt), with
+    /// The problem file (.hp); `-` is standard input. Or a model of another tool (.smv, .aag, .aig, .txt, .pddl), with
     /// further models and the formula (.hq) behind it
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
@@ -511,7 +511,7 @@ pub(crate) struct Plot {
 #[command(after_help = COMPARE_HELP)]
 pub(crate) struct Compare {
     /// Problem files (.hp), SMT-LIB files (.smt2), folders with such files, or patterns (`'specs/**/*-10.hp'`); models and
-    /// formulas of other tools (.smv, .aag, .aig, .txt, .hq), together one problem, or tables of such (.tsv); without any, what was run before
+    /// formulas of other tools (.smv, .aag, .aig, .txt, .pddl, .hq), together one problem, or tables of such (.tsv); without any, what was run before
     /// is reported again
     #[arg(value_name = "FILE|FOLDER|PATTERN")]
     pub(crate) files: Vec<String>,

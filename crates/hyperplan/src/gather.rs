@@ -69,7 +69,7 @@ pub(crate) fn is_foreign(path: &Path) -> bool {
     let begins = || {
         read_bytes(path).map(|bytes| String::from_utf8_lossy(&bytes[..bytes.len().min(4096)]).into_owned())
     };
-    let by_content = path.extension().is_some_and(|ending| ending == "txt");
+    let by_content = path.extension().is_some_and(|ending| ending == "txt" || ending == "pddl");
     let text = if by_content { begins().unwrap_or_default() } else { String::new() };
     path.to_str().and_then(|name| Kind::of(name, &text)).is_some()
 }
@@ -98,7 +98,7 @@ fn found(file: &Path, more: &mut Vec<PathBuf>, reading: &Reading) -> Result<Opti
             (Some(other), _) => {
                 let (file, other) = (files::name(file), files::name(other));
                 Err(Failure::input(format_args!(
-                    "{other} cannot be read together with {file}: only models (.smv, .aag, .aig, .txt) and formulas (.hq) of other tools \
+                    "{other} cannot be read together with {file}: only models (.smv, .aag, .aig, .txt, .pddl) and formulas (.hq) of other tools \
                      are several files"
                 )))
             }
@@ -136,7 +136,7 @@ pub(crate) fn together<'p>(files: impl Iterator<Item = &'p Path>, options: Optio
         if !is_foreign(path) {
             let name = files::name(path);
             return Err(Failure::input(format_args!(
-                "{name} is neither a model (.smv, .aag, .aig, .txt) nor a formula (.hq) of another tool"
+                "{name} is neither a model (.smv, .aag, .aig, .txt, .pddl) nor a formula (.hq) of another tool"
             )));
         }
         let name = one_line(&path.display().to_string()).into_owned();

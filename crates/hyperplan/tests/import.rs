@@ -266,3 +266,28 @@ fn circuits_systems_and_programs_are_models_too() {
     let run = hyperplan(&solve);
     assert!(run.status == 2 && run.stderr.contains("toggle.aig: byte"), "{}", run.stderr);
 }
+
+#[test]
+fn tasks_in_pddl_are_conformant_planning() {
+    let task = "import/pass/bomb.pddl";
+    // Both packages are dunked, and between them the toilet has to be flushed.
+    for (bound, status) in [("2", 1), ("3", 0), ("4", 0)] {
+        let run = hyperplan(&["solve", task, "--bound", bound, "--quiet"]);
+        assert_eq!(run.status, status, "{bound}: {}{}", run.stdout, run.stderr);
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let plan = folder.path().join("bomb.pddl");
+    let run = hyperplan(&["solve", task, "--bound", "3", "--save", text(&plan)]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    // What is saved is a plan, not a task, though their names end alike.
+    let run = hyperplan(&["verify", task, text(&plan), "--bound", "3"]);
+    assert_eq!(run.status, 0, "{}{}", run.stdout, run.stderr);
+    for (arguments, said) in [
+        (vec!["solve", task], "say it with `--bound K`"),
+        (vec!["solve", task, "--bound", "3", "--semantics", "pes"], "semantics are for formulas"),
+        (vec!["solve", task, "import/pass/names.hq", "--bound", "3"], "stands alone"),
+    ] {
+        let run = hyperplan(&arguments);
+        assert!(run.status == 2 && run.stderr.contains(said), "{arguments:?}: {}", run.stderr);
+    }
+}

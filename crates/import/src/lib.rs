@@ -1,5 +1,5 @@
 //! Files of other tools as problems: models in SMV, as NuSMV and its relatives write it, circuits in AIGER, AutoHyper's
-//! explicit systems and Boolean programs; formulas of HyperQB 1 and 2.0, HyperLasso, AutoHyper and MCHyper.
+//! explicit systems and Boolean programs, planning tasks in PDDL; formulas of HyperQB 1 and 2.0, HyperLasso, AutoHyper and MCHyper.
 //!
 //! What comes out is a syntax tree of the problem language whose places are those of the original files, so that
 //! whatever is found wrong with it later is shown where it was written. No file is read here.
@@ -18,6 +18,7 @@ mod lower;
 mod mchyper;
 mod names;
 mod parser;
+mod pddl;
 mod program;
 mod smv;
 mod system;
@@ -47,6 +48,8 @@ pub enum Kind {
     Explicit,
     /// A Boolean program of AutoHyper.
     Program,
+    /// A domain or a problem in PDDL.
+    Pddl,
     /// A formula.
     Formula,
 }
@@ -60,6 +63,8 @@ impl Kind {
             "aag" | "aig" => Some(Kind::Aiger),
             "hq" => Some(Kind::Formula),
             "txt" => Kind::of_text(text),
+            // Plans have this ending too.
+            "pddl" => is_definition(text).then_some(Kind::Pddl),
             _ => None,
         }
     }
@@ -85,7 +90,7 @@ impl Kind {
             Kind::Aiger => aiger::parse(source, text),
             Kind::Explicit => explicit::parse(source, text),
             Kind::Program => program::parse(source, text),
-            Kind::Formula => Ok(Vec::new()),
+            Kind::Pddl | Kind::Formula => Ok(Vec::new()),
         };
         read.map_or_else(|error| (Vec::new(), vec![*error]), |modules| (modules, Vec::new()))
     }
@@ -152,7 +157,12 @@ pub fn import(inputs: &[Input], options: &Options, sources: &mut SourceMap) -> I
         .iter()
         .zip(&ids)
         .filter_map(|(input, id)| Some((Kind::of(&input.name, &input.text)?, input, *id)));
-    let (formulas, models): (Vec<_>, Vec<_>) = files.partition(|(kind, ..)| *kind == Kind::Formula);
+    let files: Vec<_> = files.collect();
+    if files.iter().any(|(kind, ..)| *kind == Kind::Pddl) {
+        return task(&files, options, sources);
+    }
+    let (formulas, models): (Vec<_>, Vec<_>) =
+        files.into_iter().partition(|(kind, ..)| *kind == Kind::Formula);
     let mut distinct: Vec<(Kind, &Input, SourceId)> = Vec::new();
     let numbers: Vec<usize> = models
         .iter()
@@ -217,6 +227,50 @@ pub fn import(inputs: &[Input], options: &Options, sources: &mut SourceMap) -> I
     });
     imported.diagnostics.sort_by_key(|diagnostic| diagnostic.span);
     imported
+}
+
+/// Whether a text defines something in PDDL.
+fn is_definition(text: &str) -> bool {
+    let line = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with(';'));
+    line.is_some_and(|line| line.to_lowercase().starts_with("(define"))
+}
+
+/// A planning task: a domain and a problem. What it means is written as a problem file first.
+fn task(files: &[(Kind, &Input, SourceId)], options: &Options, sources: &mut SourceMap) -> Imported {
+    let mut imported = Imported::default();
+    let texts: Vec<(SourceId, &str)> =
+        files.iter().map(|(_, input, id)| (*id, input.text.as_str())).collect();
+    let other = files.iter().find(|(kind, ..)| *kind != Kind::Pddl);
+    let whole = |id: &SourceId| Span::new(*id, 0..0);
+    let read = match (other, &options.semantics) {
+        (Some((_, _, id)), _) => {
+            build::wrong("which-model", whole(id), "a task in PDDL stands alone: its goal is the formula")
+        }
+        (None, Some(_)) => {
+            build::wrong("unsupported", whole(&files[0].2), "a plan has an end: semantics are for formulas")
+        }
+        (None, None) => pddl::problem(&texts, options.bound),
+    };
+    let text = match read {
+        Ok(text) => text,
+        Err(error) => {
+            imported.diagnostics.push(*error);
+            return imported;
+        }
+    };
+    for (_, input, _) in files {
+        imported.about += &format!("// {}: {}\n", stem(&input.name), input.name);
+    }
+    let source = sources.add("the task without parameters".to_owned(), text.as_str());
+    let (file, diagnostics) = hyperplan_syntax::parse(source, &text);
+    if let Some(known) = options.status {
+        let objectives = file.items.iter().filter_map(|item| match item {
+            Item::Objective(objective) => Some(&objective.name.name),
+            _ => None,
+        });
+        imported.about.extend(objectives.map(|name| format!("// {name}: {}\n", known.word())));
+    }
+    Imported { file, diagnostics, ..imported }
 }
 
 /// A formula as an objective.

@@ -11,7 +11,7 @@ fn models(folder: &str) -> Vec<PathBuf> {
     let mut found: Vec<PathBuf> =
         fs::read_dir(folder).expect("it is there").map(|e| e.expect("a file").path()).collect();
     found.retain(|path| {
-        path.extension().is_some_and(|ending| ["smv", "aag", "txt"].iter().any(|e| ending == *e))
+        path.extension().is_some_and(|ending| ["smv", "aag", "txt", "pddl"].iter().any(|e| ending == *e))
     });
     found.sort();
     assert!(!found.is_empty());

@@ -12,7 +12,7 @@ pub(crate) fn run(args: &args::Import, out: &mut Output) -> Result {
     let Some(foreign) = &args.problem.foreign else {
         let file = args.problem.file.display();
         return Err(Failure::input(format_args!(
-            "{file} is neither a model (.smv, .aag, .aig, .txt) nor a formula (.hq) of another tool"
+            "{file} is neither a model (.smv, .aag, .aig, .txt, .pddl) nor a formula (.hq) of another tool"
         )));
     };
     let (lowered, sources, imported) = foreign.read(&Overrides { values: args.problem.set.clone() });

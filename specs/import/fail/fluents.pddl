@@ -1,0 +1,3 @@
+(define (domain d)
+  (:predicates (at ?x))
+  (:functions (total-cost)))

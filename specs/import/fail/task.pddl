@@ -1,0 +1,8 @@
+(define (domain d)
+  (:predicates (at ?x))
+  (:action go :parameters (?x ?y) :precondition (at ?x) :effect (and (att ?y) (not (at ?x)))))
+(define (problem p)
+  (:domain d)
+  (:objects a b)
+  (:init (at a))
+  (:goal (at b)))
