@@ -1,10 +1,11 @@
 //! What may be typed. What is meant by it is decided in [`crate::config`].
 
 use crate::foreign::Foreign;
+pub(crate) use crate::reading::{Others, Reading};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use hyperplan_family as family;
-use hyperplan_import::{Dialect, Known};
+use hyperplan_import::Known;
 use hyperplan_problem::answer::{Quantifiers, States, WitnessPath};
 use std::path::PathBuf;
 
@@ -83,46 +84,6 @@ pub(crate) struct Problem {
     /// What is read instead, where the file is one of another tool.
     #[arg(skip)]
     pub(crate) foreign: Option<Foreign>,
-}
-
-/// Files of other tools.
-#[derive(Clone, Debug, Args)]
-#[group(skip)]
-pub(crate) struct Others {
-    /// Where FILE is a model of another tool: models of further quantifiers, and the formula
-    #[arg(value_name = "MORE")]
-    pub(crate) more: Vec<PathBuf>,
-    #[command(flatten)]
-    pub(crate) reading: Reading,
-}
-
-/// How formulas of other tools are read.
-#[derive(Clone, Debug, Args)]
-#[group(skip)]
-pub(crate) struct Reading {
-    /// The number of steps of each path, for formulas of other tools: read `within K`
-    #[arg(long, value_name = "K")]
-    pub(crate) bound: Option<u32>,
-    /// How formulas of other tools are read beyond K: `pes`, `opt`, `hpes` or `hopt`; without it, as on finite traces
-    #[arg(long, value_name = "S", requires = "bound")]
-    pub(crate) semantics: Option<String>,
-    /// The language of these formulas, which matters where operators stand beside each other without parentheses; without
-    /// it, that whose signs they have
-    #[arg(long, value_parser = dialects(), value_name = "NAME")]
-    pub(crate) dialect: Option<Dialect>,
-}
-
-/// The languages of formulas.
-fn dialects() -> impl TypedValueParser<Value = Dialect> {
-    let named = |name: String| Dialect::ALL.into_iter().find(|dialect| dialect.name() == name);
-    PossibleValuesParser::new(Dialect::ALL.map(Dialect::name))
-        .try_map(move |name| named(name).ok_or("it is none of them"))
-}
-
-/// What is known of a formula.
-fn known() -> impl TypedValueParser<Value = Known> {
-    PossibleValuesParser::new(["realizable", "unrealizable", "holds", "violated"])
-        .try_map(|word| Known::of_word(&word).ok_or("it is none of them"))
 }
 
 /// Which objective, and how to print what comes of it.
@@ -429,7 +390,7 @@ pub(crate) struct Import {
     #[command(flatten)]
     pub(crate) others: Others,
     /// What is known of the formula: it is kept in a comment, for `compare`
-    #[arg(long, value_parser = known(), value_name = "WORD")]
+    #[arg(long, value_parser = crate::reading::known(), value_name = "WORD")]
     pub(crate) status: Option<Known>,
     /// The problem file; without it, standard output
     #[arg(short, long, value_name = "FILE.hp")]

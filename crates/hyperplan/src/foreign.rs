@@ -23,8 +23,14 @@ impl Foreign {
         let mut sources = SourceMap::new();
         let mut imported = import(&self.inputs, &self.options, &mut sources);
         for diagnostic in &mut imported.diagnostics {
-            if diagnostic.code == "unbounded-operator" {
-                diagnostic.help = Some("say it with `--bound K`".to_owned());
+            match diagnostic.code {
+                "unbounded-operator" => diagnostic.help = Some("say it with `--bound K`".to_owned()),
+                "other-precedence" => {
+                    let help =
+                        "this is read as it does; parentheses make it plain, and `--dialect` names another";
+                    diagnostic.help = Some(help.to_owned());
+                }
+                _ => {}
             }
         }
         let mut diagnostics = std::mem::take(&mut imported.diagnostics);

@@ -28,8 +28,7 @@ pub(crate) fn parse(
             let message =
                 format!("{} binds operators otherwise than usual, and that matters here", own.tool());
             let warning = Diagnostic::warning("other-precedence", formula.body.span, message);
-            let help = "this is read as it does; parentheses make it plain, and `--dialect` names another";
-            Ok((formula, Some(warning.with_help(help))))
+            Ok((formula, Some(warning.with_help("this is read as it does; parentheses make it plain"))))
         }
         // A language that was only guessed is perhaps another.
         (Err(_), Ok(formula)) if dialect.is_none() => Ok((formula, None)),

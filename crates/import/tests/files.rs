@@ -166,7 +166,7 @@ fn read_formula(formula: &str, options: Options) -> (String, Vec<&'static str>) 
     let imported = import(&inputs, &Options { bound: Some(6), ..options }, &mut SourceMap::new());
     let text = format!("{}{}", imported.about, print(&imported.file, ""));
     let start = text.find("objective").unwrap_or(text.len());
-    let last = text[start..].lines().filter(|line| !line.trim().is_empty() && line.trim() != "}").last();
+    let last = text[start..].lines().rfind(|line| !line.trim().is_empty() && line.trim() != "}");
     let codes = imported.diagnostics.iter().map(|diagnostic| diagnostic.code).collect();
     (last.unwrap_or_default().trim().trim_end_matches(';').to_owned(), codes)
 }
@@ -225,4 +225,59 @@ fn comments_of_formulas_say_what_is_known() {
     assert_eq!(about(formula, Some(Known::Realizable), None), (Some("realizable".to_owned()), vec![]));
     assert_eq!(about(formula, Some(Known::Unrealizable), None).1, ["contradictory-status"]);
     assert_eq!(about("exists A. F a[A]", Some(Known::Unrealizable), None).0, Some("unrealizable".to_owned()));
+}
+
+/// Whatever is done to a good file, it is read or refused.
+#[test]
+fn damaged_files_do_no_harm() {
+    let files: Vec<(String, String)> = models("pass")
+        .into_iter()
+        .chain(models("fail"))
+        .flat_map(|model| [model.clone(), model.with_extension("hq")])
+        .filter_map(|path| {
+            let name = path.file_name()?.to_string_lossy().into_owned();
+            Some((name, fs::read_to_string(path).ok()?))
+        })
+        .collect();
+    hyperplan_random::property(1500, 60, |random| {
+        let inputs: Vec<Input> = (0..1 + random.below(3))
+            .map(|_| {
+                let (name, text) = &files[random.below(files.len())];
+                Input { name: name.clone(), text: damaged(text, random) }
+            })
+            .collect();
+        let options = Options { bound: (!random.once_in(4)).then_some(3), ..Options::default() };
+        let mut sources = SourceMap::new();
+        let imported = import(&inputs, &options, &mut sources);
+        let told = render(&sources, &imported.diagnostics, false, 100);
+        let refused = imported.diagnostics.iter().any(Diagnostic::is_error);
+        assert!(!refused || told.contains("error"), "{told}");
+        if !refused {
+            let _ = lower(&imported.file, &mut sources, &NoFiles, &Overrides::default());
+        }
+        let circuit =
+            files.iter().find(|(name, _)| name == "circuit.aag").map(|(_, text)| damaged(text, random));
+        let _ = hyperplan_import::ascii(circuit.unwrap_or_default().replacen("aag", "aig", 1).as_bytes());
+    });
+}
+
+/// A text in which some words are gone, doubled, or others.
+fn damaged(text: &str, random: &mut hyperplan_random::Random) -> String {
+    let mut words: Vec<&str> = text.split_inclusive(|c: char| !c.is_alphanumeric()).collect();
+    for _ in 0..random.below(4) {
+        let at = random.below(words.len());
+        match random.below(4) {
+            0 => drop(words.remove(at)),
+            1 => words.insert(at, words[random.below(words.len())]),
+            2 => {
+                words[at] =
+                    ["(", ")", "99999999999", "-1", "é", "_", "\"", "{", "esac", "["][random.below(10)]
+            }
+            _ => words.truncate(at + 1),
+        }
+        if words.is_empty() {
+            break;
+        }
+    }
+    words.concat()
 }

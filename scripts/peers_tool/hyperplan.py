@@ -1,0 +1,7 @@
+"""hyperplan on models and formulas; see the package."""
+
+from peers_tool import Peer
+
+
+class Tool(Peer):
+    peer = "hyperplan"

@@ -1,0 +1,7 @@
+"""hyperqb2 on models and formulas; see the package."""
+
+from peers_tool import Peer
+
+
+class Tool(Peer):
+    peer = "hyperqb2"
