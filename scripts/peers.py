@@ -111,7 +111,7 @@ def run(words: list[str], timeout: float) -> dict:
         late = True
         os.killpg(process.pid, signal.SIGKILL)
         out, err = process.communicate()
-    return {"status": process.returncode, "late": late, "seconds": time.monotonic() - begin, "out": out[-20000:], "err": err[-2000:]}
+    return {"status": process.returncode, "late": late, "seconds": time.monotonic() - begin, "out": out[-1_000_000:], "err": err[-2000:]}
 
 
 def verdict(peer: dict, ended: dict) -> tuple[str, str]:

@@ -45,7 +45,9 @@ impl Dialect {
     pub(crate) fn of(tokens: &[Token<'_>]) -> Option<Dialect> {
         let sign = |signs: &[&str]| tokens.iter().any(|t| t.tok == Tok::Sign && signs.contains(&t.text));
         let pathed = |pair: &[Token<'_>]| pair[0].text == "}" && pair[1].text.starts_with('_');
-        if sign(&["/\\", "\\/", "*"]) {
+        // Behind an operand a star is a product.
+        let opens = |pair: &[Token<'_>]| pair[1].text == "*" && is_open(pair[0]);
+        if sign(&["/\\", "\\/"]) || tokens.windows(2).any(opens) {
             Some(Dialect::HyperQb1)
         } else if tokens.windows(2).any(pathed) || tokens.iter().any(|t| t.tok == Tok::Text) {
             Some(Dialect::AutoHyper)
@@ -65,6 +67,11 @@ impl Dialect {
             Dialect::AutoHyper => &AUTOHYPER,
         }
     }
+}
+
+/// Whether an operand is to come.
+fn is_open(token: Token<'_>) -> bool {
+    token.tok == Tok::Sign && !matches!(token.text, ")" | "]" | "}" | "*")
 }
 
 /// Whether HyperQB 2.0 has that sign.

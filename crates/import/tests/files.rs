@@ -187,6 +187,7 @@ fn languages_bind_operators_in_their_own_way() {
         ("exists A. a[A] \\/ b[A] -> c[A]", None, "a[A] | (b[A] -> c[A])", true),
         ("exists A. a[A] /\\ b[A] \\/ c[A]", Some(HyperLasso), "(a[A] & b[A]) | c[A]", false),
         ("exists A. G(*a[A]=1* <-> *b[A]=1*) /\\ F(c[A])", None, "G(a[A] <-> b[A]) & F(c[A])", false),
+        ("exists A. c[A] & a[A] | toint(a[A]) * 2 > 1", None, "(c[A] & a[A]) | (toint(a[A]) * 2 > 1)", false),
         ("Exists A . a[A] = b[A] & c[A]", None, "a[A] <-> (b[A] & c[A])", true),
         ("exists A . a[A] = b[A] & c[A]", None, "(a[A] <-> b[A]) & c[A]", false),
         ("exists A . a[A] = b[A] & c[A]", Some(HyperQb2), "a[A] <-> (b[A] & c[A])", true),
