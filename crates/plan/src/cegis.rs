@@ -197,8 +197,39 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
         let first = Game { env, recipes, guard: Term::TRUE, level: level + 1 };
         let mut round =
             Round { query, dialogue, first: first.clone(), games: Vec::new(), goal: rest, against };
+        let copied = self.copied(level, &first);
         round.conclude(self.blocks, first);
+        if let Some(copied) = copied {
+            round.conclude(self.blocks, copied);
+        }
         Ok(round)
+    }
+
+    /// The game that is over because the other player, whose block is the last, takes paths that are there already: of the
+    /// same systems, and as long. Where the formula asks for a path like another, that is what decides, and nothing
+    /// has to be found. Within a search only: the outermost one has better ways for two blocks.
+    fn copied(&self, level: usize, game: &Game) -> Option<Game> {
+        if level == 0 || game.level + 1 != self.blocks.len() {
+            return None;
+        }
+        let (paths, task) = (&self.encoder.objective.paths, &self.encoder.task);
+        let earlier = self.blocks[..level].iter().flatten().rev();
+        let there: Vec<PathId> = self.blocks[level].iter().chain(earlier).copied().collect();
+        let mut next = game.clone();
+        let mut taken = Vec::new();
+        for &path in &self.blocks[game.level] {
+            let fits = |other: &&PathId| {
+                game.env[usize::from(**other)].is_some()
+                    && paths[**other].system == paths[path].system
+                    && task.horizon(**other) >= task.horizon(path)
+            };
+            let free = there.iter().find(|other| !taken.contains(*other) && fits(other));
+            let other = *free.or_else(|| there.iter().find(fits))?;
+            taken.push(other);
+            next.env[usize::from(path)] = game.env[usize::from(other)];
+        }
+        next.level += 1;
+        Some(next)
     }
 
     /// A model that describes no path: instance by instance, numbers without bounds can grow without end.

@@ -88,6 +88,22 @@ fn what_was_chosen_is_told_with_its_reason() {
     assert_eq!((outcome.quantifiers, outcome.because), (Quantifiers::Cegis, None));
 }
 
+/// One answer after the other would take as many rounds as there are paths.
+#[test]
+fn a_path_like_another_is_that_path() {
+    let text = "system S { state x: 0..7; action up, down; on up | down { x' in 0..7; } }
+        objective same within 8 { exists a. forall b. exists c. x[a] == 3 & G (x[b] == x[c]) }
+        objective other within 8 { exists a. forall b. exists c. x[a] == 3 & G (x[b] == x[c]) & F x[c] == 3 }";
+    let lowered = read(&mut SourceMap::new(), "test.hp", text, &NoFiles, &Overrides::none());
+    let search = |at: usize| {
+        let config = Config { quantifiers: Quantifiers::Cegis, ..config() };
+        let config = Config { deadline: Deadline::after(Duration::from_secs(60)), ..config };
+        solve(&lowered.problem, &lowered.problem.objectives[at], &config).expect("it is supported").verdict
+    };
+    assert_eq!(search(0), Verdict::Realizable);
+    assert_eq!(search(1), Verdict::Unrealizable);
+}
+
 #[test]
 fn notes_are_facts() {
     let outcome = solved("within T { exists p. start[p] & N G action[p] == push & F goal[p] }", &config());
