@@ -3,7 +3,7 @@
 use hyperplan_import::{Input, Options, ascii, import};
 use hyperplan_problem::{NoFiles, Overrides, System, SystemId, lower};
 use hyperplan_random::{Random, property};
-use hyperplan_space::{Graph, eval_in};
+use hyperplan_space::{Graph, holds_in};
 use hyperplan_syntax::SourceMap;
 use std::cell::Cell;
 use std::collections::BTreeSet;
@@ -183,8 +183,8 @@ fn explicit_systems_mean_what_they_say() {
             let at = numbers.iter().position(|n| *n as i64 == graph.codes(state)[0]).expect("it is one");
             for (label, name) in ["a", "b"].iter().enumerate() {
                 let own = system.labels.iter().find(|l| l.name == *name).expect("it is there");
-                let value = eval_in(&system, &own.expr, graph.codes(state));
-                assert_eq!(value == 1, holds[at].contains(&label), "{text}");
+                let value = holds_in(&system, &own.expr, &graph.state(&system, state));
+                assert_eq!(value, Some(holds[at].contains(&label)), "{text}");
             }
         }
     });

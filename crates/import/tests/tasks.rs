@@ -4,7 +4,7 @@
 use hyperplan_import::{Input, Options, import};
 use hyperplan_problem::{NoFiles, Overrides, lower};
 use hyperplan_random::{Random, property};
-use hyperplan_space::{Graph, eval_in};
+use hyperplan_space::{Graph, holds_in};
 use hyperplan_syntax::SourceMap;
 use std::cell::Cell;
 use std::collections::BTreeSet;
@@ -212,7 +212,7 @@ fn imported(text: &str) -> Option<usize> {
     let graph = Graph::explore(system, 10_000).expect("it is small");
     let label = &system.labels[system.label("goal").expect("it is there")];
     let goal = |belief: &BTreeSet<u32>| {
-        belief.iter().all(|state| eval_in(system, &label.expr, graph.codes(*state)) != 0)
+        belief.iter().all(|state| holds_in(system, &label.expr, &graph.state(system, *state)) == Some(true))
     };
     let next = |belief: &BTreeSet<u32>| {
         let of = |action: usize| {
