@@ -130,7 +130,11 @@ fn count(number: usize, what: &str) -> String {
 }
 
 fn facts(contest: &Contest<'_>) -> String {
-    let hosts: BTreeSet<&str> = contest.runs().map(|run| run.host.as_str()).collect();
+    let host = |run: &Record| match &run.processor {
+        Some(processor) => format!("{} ({processor})", run.host),
+        None => run.host.clone(),
+    };
+    let hosts: BTreeSet<String> = contest.runs().map(host).collect();
     let mut facts = format!(
         "{} of {} on {}",
         count(contest.runs().count(), "run"),
@@ -145,7 +149,7 @@ fn facts(contest: &Contest<'_>) -> String {
         facts.push_str(&format!(" and {memory} MiB"));
     }
     if !hosts.is_empty() {
-        let hosts: Vec<&str> = hosts.into_iter().collect();
+        let hosts: Vec<String> = hosts.into_iter().collect();
         facts.push_str(&format!(", on {}", hosts.join(", ")));
     }
     facts.push('.');

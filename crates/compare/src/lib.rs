@@ -3,6 +3,9 @@
 //! [`plan`](plan::plan) says what is to be run, [`run_all`] runs it, each run below a process that
 //! [`supervise`](supervise())s it, and a [`Log`] keeps a [`Record`] of each. From the records come judgement, scores,
 //! tables and plots.
+//!
+//! Several machines do it together: [`list`] is the plan as a file, [`share`] cuts it, [`work`] hands it out, and [`merge`]
+//! makes one of their logs.
 
 pub mod benchexec;
 pub mod contest;
@@ -12,7 +15,10 @@ mod html;
 mod judge;
 pub mod latex;
 mod links;
+pub mod list;
 mod log;
+mod machine;
+pub mod merge;
 mod paths;
 pub mod plan;
 pub mod plot;
@@ -22,15 +28,18 @@ mod reading;
 mod record;
 pub mod report;
 pub mod score;
+pub mod share;
 mod supervise;
 pub mod table;
 mod terminal;
 mod tree;
 mod witness;
+pub mod work;
 
 pub use judge::{Claim, Fault, Finding, Judgement, Kind, judge};
 pub use log::{Log, LogError, Past};
-pub use pool::{Event, Setting, prepare, run_all};
+pub use machine::{cores, processor};
+pub use pool::{Event, Setting, prepare, run_all, tidy};
 pub use query::Query;
 pub use record::{Answer, Limit, Record, RunStatus, checked};
 pub use supervise::supervise;

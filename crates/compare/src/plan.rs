@@ -164,10 +164,8 @@ impl Run {
         let Candidate { name: solver, version, stamp, standalone } = &**solver;
         let standalone = standalone.as_ref().map(|standalone| match kind {
             // hyperplan adds arguments by itself.
-            Kind::Problem { .. } => (&standalone.program, Vec::new(), None),
-            Kind::Query(query) => {
-                (&standalone.program, standalone.arguments(file, query.incremental).0, standalone.seed(*seed))
-            }
+            Kind::Problem { .. } => (Vec::new(), None),
+            Kind::Query(query) => (standalone.arguments(file, query.incremental).0, standalone.seed(*seed)),
         });
         let own = match kind {
             Kind::Problem { .. } => build,

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use hyperplan_problem::answer::ReasonCode;
 use rustix::process::{Pid, Signal, kill_process, kill_process_group};
@@ -27,6 +27,8 @@ use crate::witness;
 const TICK: Duration = Duration::from_millis(100);
 /// How much later than its limits a supervisor may end a run.
 const LATE: Duration = Duration::from_secs(5);
+/// How much later than others this process may learn that all are to end.
+const LEARN: Duration = Duration::from_millis(400);
 /// How long hyperplan may take to end by itself when its time is over.
 const GRACE: f64 = 2.0;
 
@@ -45,6 +47,10 @@ pub struct Setting {
     pub queries: bool,
     /// The machine.
     pub host: String,
+    /// The model of its processors.
+    pub processor: Option<String>,
+    /// The CPUs on which runs are kept, for each of those at a time one; empty where they may go where they like.
+    pub pinned: Vec<usize>,
 }
 
 /// What happens to a run.
@@ -54,6 +60,11 @@ pub enum Event<'a> {
     Started(&'a Run),
     /// It has ended.
     Finished(Box<Record>),
+}
+
+/// Removes what runs leave for the next, where nothing is in it; nobody may be running there.
+pub fn tidy(folder: &Path) {
+    folders::remove_if_empty(folder);
 }
 
 /// Does the runs, and tells of each. Gives whether all were done; `cancelled` ends those that are going on, of which
@@ -67,28 +78,18 @@ pub fn run_all<E: From<io::Error> + Send>(
     cancelled: &AtomicBool,
     mut tell: impl FnMut(Event<'_>) -> Result<(), E>,
 ) -> Result<bool, E> {
-    let outcome = work(runs, setting, cancelled, &mut tell);
-    folders::remove_if_empty(&setting.folder);
-    outcome
-}
-
-fn work<E: From<io::Error> + Send>(
-    runs: &[Run],
-    setting: &Setting,
-    cancelled: &AtomicBool,
-    tell: &mut impl FnMut(Event<'_>) -> Result<(), E>,
-) -> Result<bool, E> {
     let next = AtomicUsize::new(0);
     let lifelines = Lifelines::default();
     let (sender, events) = mpsc::channel();
     thread::scope(|scope| {
-        for _ in 0..setting.jobs.clamp(1, runs.len().max(1)) {
+        for worker in 0..setting.jobs.clamp(1, runs.len().max(1)) {
             let (sender, next, lifelines) = (sender.clone(), &next, &lifelines);
+            let cpu = setting.pinned.get(worker).copied();
             scope.spawn(move || {
                 while let Some(run) = runs.get(next.fetch_add(1, Ordering::Relaxed)) {
                     // Nobody listens any more where that fails.
                     let going = sender.send(Ok(Event::Started(run))).is_ok() && !lifelines.are_cut();
-                    let finished = going.then(|| one(run, setting, lifelines)).transpose();
+                    let finished = going.then(|| one(run, setting, cpu, lifelines)).transpose();
                     match finished.map(Option::flatten).transpose() {
                         Some(finished) => {
                             let _ = sender.send(finished.map(|record| Event::Finished(Box::new(record))));
@@ -104,7 +105,7 @@ fn work<E: From<io::Error> + Send>(
             match events.recv_timeout(TICK) {
                 Ok(event) => {
                     finished += usize::from(matches!(event, Ok(Event::Finished(_))));
-                    if let Err(error) = event.map_err(E::from).and_then(&mut *tell) {
+                    if let Err(error) = event.map_err(E::from).and_then(&mut tell) {
                         break Err(error);
                     }
                 }
@@ -156,6 +157,15 @@ impl Lifelines {
         state.open.retain(|(other, _)| *other != id);
     }
 
+    /// Where a scheduler ends a job, all of its processes get a signal, and this one may learn last that all is to end.
+    fn are_cut_soon(&self) -> bool {
+        let end = Instant::now() + LEARN;
+        while !self.are_cut() && Instant::now() < end {
+            thread::sleep(TICK / 4);
+        }
+        self.are_cut()
+    }
+
     fn cut(&self) {
         let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         state.cut = true;
@@ -164,18 +174,25 @@ impl Lifelines {
 }
 
 /// Does one run; `None` where it was interrupted.
-fn one(run: &Run, setting: &Setting, lifelines: &Lifelines) -> io::Result<Option<Record>> {
+fn one(
+    run: &Run,
+    setting: &Setting,
+    cpu: Option<usize>,
+    lifelines: &Lifelines,
+) -> io::Result<Option<Record>> {
     let folders = Folders::new(run, &setting.folder, setting.queries)?;
     let measured = match &run.instance.kind {
         Kind::Query(query) => {
             let copy = folders.copy(run)?;
             let file = copy.as_deref().unwrap_or(&run.instance.file);
-            let measured = measure(&query_job(run, query, file, &folders), setting, lifelines);
+            let job = Job { cpu, ..query_job(run, query, file, &folders) };
+            let measured = measure(&job, setting, lifelines);
             copy.as_deref().map(fs::remove_file).transpose()?;
             measured
         }
         Kind::Problem { objective } => {
-            measure(&problem_job(run, objective, setting, &folders), setting, lifelines)
+            let job = Job { cpu, ..problem_job(run, objective, setting, &folders) };
+            measure(&job, setting, lifelines)
         }
     };
     // The run that was interrupted is done again, and its queries with it.
@@ -204,16 +221,17 @@ fn measure(job: &Job, setting: &Setting, lifelines: &Lifelines) -> io::Result<Op
     lifelines.release(child.id());
     let heard = heard?;
     // The number of the program, if it was started, and what became of it.
-    if let Some(measured) = heard.lines().last().and_then(|line| serde_json::from_str(line).ok()) {
-        return Ok(Some(measured));
-    }
+    let measured: Option<Measured> = heard.lines().last().and_then(|line| serde_json::from_str(line).ok());
     let program = heard.lines().next().and_then(|line| line.parse().ok());
-    if let Some(group) = program.and_then(Pid::from_raw) {
+    if let (None, Some(group)) = (&measured, program.and_then(Pid::from_raw)) {
         // Nobody else ends it any more.
         let _ = kill_process_group(group, Signal::KILL);
     }
-    if lifelines.are_cut() {
+    if measured.as_ref().is_none_or(Measured::is_signalled) && lifelines.are_cut_soon() {
         return Ok(None);
+    }
+    if measured.is_some() {
+        return Ok(measured);
     }
     let failure = Some(format!("the process that measures it ended: {}", status?));
     Ok(Some(Measured { failure, ..Measured::default() }))
@@ -283,6 +301,7 @@ fn problem_job(run: &Run, objective: &str, setting: &Setting, folders: &Folders)
         input: None,
         limit: run.limit,
         grace_s: GRACE,
+        cpu: None,
     }
 }
 
@@ -297,6 +316,7 @@ fn query_job(run: &Run, query: &Query, file: &str, folders: &Folders) -> Job {
         input: from_input.then(|| file.to_owned()),
         limit: run.limit,
         grace_s: 0.0,
+        cpu: None,
     }
 }
 
@@ -365,7 +385,14 @@ fn record(run: &Run, setting: &Setting, measured: &Measured, folders: &Folders) 
         solver_s: reading.solver_s,
         rounds: reading.rounds,
         reason_code: reading.reason_code,
+        processor: setting.processor.clone(),
+        ended_ms: now_ms(),
     }
+}
+
+fn now_ms() -> Option<u64> {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).ok()?;
+    u64::try_from(since.as_millis()).ok()
 }
 
 /// To what can be measured.

@@ -141,6 +141,12 @@ pub struct Record {
     /// Why there is no answer, in a word; `None` for a query.
     #[serde(default)]
     pub reason_code: Option<ReasonCode>,
+    /// The model of the machine's processors, where it says.
+    #[serde(default)]
+    pub processor: Option<String>,
+    /// When it ended, in milliseconds since 1970.
+    #[serde(default)]
+    pub ended_ms: Option<u64>,
 }
 
 /// What became of a witness, in words, from how a record says that it was checked.
@@ -194,6 +200,8 @@ pub(crate) mod tests {
             solver_s: None,
             rounds: None,
             reason_code: None,
+            processor: None,
+            ended_ms: None,
         }
     }
 
@@ -201,7 +209,16 @@ pub(crate) mod tests {
     fn later_fields_may_be_missing() {
         let mut line = serde_json::to_value(record("")).expect("it is JSON");
         let fields = line.as_object_mut().expect("it is an object");
-        for field in ["key", "states_used", "quantifiers_used", "solver_s", "rounds", "reason_code"] {
+        for field in [
+            "key",
+            "states_used",
+            "quantifiers_used",
+            "solver_s",
+            "rounds",
+            "reason_code",
+            "processor",
+            "ended_ms",
+        ] {
             assert!(fields.remove(field).is_some());
         }
         assert_eq!(serde_json::from_value::<Record>(line).expect("it is a record"), record(""));

@@ -24,7 +24,7 @@ use rustix::process::{Pid, WaitOptions, WaitStatus};
 use serde::{Deserialize, Serialize};
 
 use crate::record::Limit;
-use crate::tree;
+use crate::{machine, tree};
 
 /// How often the tree is looked at; at first more often, since most runs are short.
 const TICK: Duration = Duration::from_millis(20);
@@ -51,6 +51,8 @@ pub(crate) struct Job {
     pub(crate) limit: Limit,
     /// How long after its wall limit it is ended, in seconds: so that a program that knows the limit can end by itself.
     pub(crate) grace_s: f64,
+    /// The only CPU that it may use.
+    pub(crate) cpu: Option<usize>,
 }
 
 /// Which limit was exceeded.
@@ -90,6 +92,13 @@ impl Measured {
     pub(crate) fn is_cut(&self) -> bool {
         self.stdout.len() >= KEPT
     }
+
+    /// Whether a signal ended it that was not ours.
+    pub(crate) fn is_signalled(&self) -> bool {
+        // As hyperplan and shells say it: 128 and the number of INT or TERM.
+        let said = matches!(self.exit_code, Some(130 | 143));
+        self.exceeded.is_none() && (self.signal.is_some() || said)
+    }
 }
 
 enum Event {
@@ -118,7 +127,8 @@ pub fn supervise() -> io::Result<()> {
         let _ = io::copy(&mut io::stdin().lock(), &mut io::sink());
         let _ = stop.send(Event::Stop);
     })?;
-    let measured = match Supervised::start(&job, sender) {
+    let pinned = job.cpu.map_or(Ok(()), machine::pin);
+    let measured = match pinned.and_then(|()| Supervised::start(&job, sender)) {
         Ok(supervised) => supervised.watch(&job, &events),
         Err(error) => Some(Measured {
             failure: Some(format!("cannot run {}: {error}", job.program)),

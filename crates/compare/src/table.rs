@@ -211,7 +211,7 @@ pub(crate) fn seconds(seconds: f64) -> String {
 const COLUMNS: &str = "\
     instance,family,sha256,logic,states,quantifiers,states_used,quantifiers_used,horizon,set,solver,\
     version,options,seed,repetition,status,expected,verified,wall_s,cpu_s,solver_s,rounds,memory_mib,\
-    limit_wall_s,limit_cpu_s,limit_memory_mib,exit_code,signal,host,variables,assertions,bytes,message,\
+    limit_wall_s,limit_cpu_s,limit_memory_mib,exit_code,signal,host,processor,variables,assertions,bytes,message,\
     queries";
 
 /// Writes every column of every record as CSV, a line each, whatever is in names and messages. Text that a spreadsheet

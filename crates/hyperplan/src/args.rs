@@ -1,5 +1,9 @@
 //! What may be typed. What is meant by it is decided in [`crate::config`].
 
+mod compare;
+
+pub(crate) use compare::{Asked, Compare, Settings, Shard};
+
 use crate::foreign::Foreign;
 pub(crate) use crate::reading::{Others, Reading};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -469,81 +473,6 @@ pub(crate) struct Plot {
 }
 
 #[derive(Debug, Args)]
-#[command(after_help = COMPARE_HELP)]
-pub(crate) struct Compare {
-    /// Problem files (.hp), SMT-LIB files (.smt2), folders with such files, or patterns (`'specs/**/*-10.hp'`); models and
-    /// formulas of other tools (.smv, .aag, .aig, .txt, .pddl, .hq), together one problem, or tables of such (.tsv); without any, what was run before
-    /// is reported again
-    #[arg(value_name = "FILE|FOLDER|PATTERN")]
-    pub(crate) files: Vec<String>,
-    #[command(flatten)]
-    pub(crate) reading: Reading,
-    /// Leaves out files that cannot be used, and says why, instead of running nothing
-    #[arg(long)]
-    pub(crate) skip_bad: bool,
-    /// The objectives, or `all`; files that have none of that name are left out
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_value = "all")]
-    pub(crate) objective: Vec<String>,
-    /// Solvers as for `solve`; here commas mean each of them by itself, not a race [default: builtin and all that are
-    /// installed]
-    #[arg(long, value_name = "SOLVER,...")]
-    pub(crate) solver: Option<String>,
-    /// How quantifiers are decided, each in turn
-    #[arg(long, value_parser = quantifiers(), value_name = "HOW,...", value_delimiter = ',', default_value = "auto")]
-    pub(crate) quantifiers: Vec<Quantifiers>,
-    /// How states are represented, each in turn
-    #[arg(long, value_parser = states(), value_name = "HOW,...", value_delimiter = ',', default_value = "auto")]
-    pub(crate) states: Vec<Option<States>>,
-    /// Replaces the value of a constant, by each of several in turn; with several constants, all combinations
-    #[arg(long, value_name = "NAME=VALUE,...|LO..HI", value_parser = settings)]
-    pub(crate) set: Vec<Settings>,
-    /// Seeds of the solver, each in turn
-    #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "0")]
-    pub(crate) seed: Vec<u64>,
-    /// How often to do each run
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
-    pub(crate) repeat: u32,
-    /// Wall time of each run
-    #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
-    pub(crate) timeout: f64,
-    /// CPU time of each run, with everything it starts
-    #[arg(long, value_name = "SECONDS")]
-    pub(crate) cpu: Option<f64>,
-    /// Most memory of each run, with everything it starts
-    #[arg(long, value_name = "MIB")]
-    pub(crate) memory: Option<u64>,
-    /// How many runs at a time; they slow each other down
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
-    pub(crate) jobs: u16,
-    /// The folder for the log of all runs, runs.jsonl, and the reports
-    #[arg(long, value_name = "DIR", default_value = "comparison")]
-    pub(crate) out: PathBuf,
-    /// Keeps the queries of each run there
-    #[arg(long)]
-    pub(crate) queries: bool,
-    /// Leaves strategies unchecked
-    #[arg(long)]
-    pub(crate) no_verify: bool,
-    /// Runs nothing, but writes the same comparison of problem files for BenchExec
-    #[arg(long, value_name = "DIR")]
-    pub(crate) benchexec: Option<PathBuf>,
-}
-
-const COMPARE_HELP: &str =
-    "Every run is written to the log as soon as it has ended. The same command again does only \
-what is missing there: after an interruption, or where a file, a solver, an option or a limit has changed.
-
-Exit status: 0 nothing is wrong with any answer; 4 a solver gave a wrong answer or model, or is not there; \
-5 hyperplan may be wrong; 2 bad usage or input; 130 interrupted.";
-
-/// A constant and its values.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Settings {
-    pub(crate) name: String,
-    pub(crate) values: Vec<String>,
-}
-
-#[derive(Debug, Args)]
 pub(crate) struct Solvers {
     /// Only allows the hyperplan.toml of this folder (or of the nearest above it) to say which programs are run, until it
     /// changes
@@ -606,27 +535,6 @@ fn path_of_actions(text: &str) -> Result<WitnessPath, String> {
         some => some.split(',').map(|action| action.trim().to_owned()).collect(),
     };
     Ok(WitnessPath { path, system: String::new(), actions, states: Vec::new(), positions: None })
-}
-
-/// The most values of a range.
-const VALUES: i64 = 10_000;
-
-fn settings(text: &str) -> Result<Settings, String> {
-    let (name, values) = setting(text)?;
-    let number = |text: &str| text.trim().parse::<i64>().ok();
-    let range = values.split_once("..").and_then(|(lo, hi)| number(lo).zip(number(hi)));
-    let values: Vec<String> = match range {
-        Some((lo, hi)) if lo > hi => return Err(format!("the range {lo}..{hi} is empty")),
-        Some((lo, hi)) if hi.checked_sub(lo).is_none_or(|size| size >= VALUES) => {
-            return Err(format!("the range {lo}..{hi} has more than {VALUES} values"));
-        }
-        Some((lo, hi)) => (lo..=hi).map(|value| value.to_string()).collect(),
-        None => values.split(',').map(|value| value.trim().to_owned()).collect(),
-    };
-    if values.iter().any(String::is_empty) {
-        return Err("expected NAME=VALUE, NAME=VALUE,VALUE or NAME=LO..HI".to_owned());
-    }
-    Ok(Settings { name, values })
 }
 
 /// The greatest number that a range may have, as in problem files; differences of two of them are numbers still.

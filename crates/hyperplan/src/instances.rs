@@ -21,12 +21,8 @@ const COMBINATIONS: usize = 100_000;
 
 /// All instances, in the order of the files. Files that cannot be read are all told of, and then nothing is run, unless
 /// they are to be left out.
-pub(crate) fn instances(
-    arguments: &[String],
-    args: &args::Compare,
-    out: &Output,
-) -> Result<Vec<Arc<Instance>>> {
-    let files = files(arguments)?;
+pub(crate) fn instances(args: &args::Asked, out: &Output) -> Result<Vec<Arc<Instance>>> {
+    let files = files(&args.files)?;
     let sets = combinations(&args.set)?;
     let mut instances = Vec::new();
     let mut seen = BTreeSet::new();

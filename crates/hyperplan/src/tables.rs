@@ -22,7 +22,8 @@ pub(crate) fn imported(args: &args::Compare, out: &Output) -> Result<Vec<String>
     let is_table = |name: &String| Path::new(name).extension().is_some_and(|ending| ending == "tsv");
     let is_foreign = |name: &String| is_foreign(Path::new(name));
     let mut entries = Vec::new();
-    let direct: Vec<PathBuf> = args.files.iter().filter(|name| is_foreign(name)).map(PathBuf::from).collect();
+    let direct: Vec<PathBuf> =
+        args.asked.files.iter().filter(|name| is_foreign(name)).map(PathBuf::from).collect();
     if direct.is_empty() && args.reading.bound.is_some() {
         return Err(Failure::input(
             "--bound is for models and formulas on the command line; tables have bounds",
@@ -31,20 +32,20 @@ pub(crate) fn imported(args: &args::Compare, out: &Output) -> Result<Vec<String>
     if !direct.is_empty() {
         entries.push(Entry { family: None, files: direct, options: options(&args.reading)? });
     }
-    for table in args.files.iter().filter(|name| is_table(name)) {
+    for table in args.asked.files.iter().filter(|name| is_table(name)) {
         entries.extend(Entry::of_table(Path::new(table), args)?);
     }
-    let others = args.files.iter().filter(|name| !is_table(name) && !is_foreign(name));
+    let others = args.asked.files.iter().filter(|name| !is_table(name) && !is_foreign(name));
     let mut files: Vec<String> = others.cloned().collect();
     let folder = args.benchexec.as_deref().unwrap_or(&args.out).join(FOLDER);
     let mut names = BTreeSet::new();
     let mut bad = 0;
     for entry in &entries {
-        match entry.import(&folder, &mut names, args.skip_bad, out) {
+        match entry.import(&folder, &mut names, args.asked.skip_bad, out) {
             Ok(file) => files.push(file),
             Err(failure) => {
                 bad += 1;
-                if args.skip_bad {
+                if args.asked.skip_bad {
                     out.remark(format_args!("left out: {}", failure.message));
                 } else {
                     out.failure(&failure);
@@ -52,8 +53,8 @@ pub(crate) fn imported(args: &args::Compare, out: &Output) -> Result<Vec<String>
             }
         }
     }
-    if bad > 0 && (!args.skip_bad || bad == entries.len()) {
-        let how = if args.skip_bad { "" } else { ": correct them, or leave them out with --skip-bad" };
+    if bad > 0 && (!args.asked.skip_bad || bad == entries.len()) {
+        let how = if args.asked.skip_bad { "" } else { ": correct them, or leave them out with --skip-bad" };
         let all = entries.len();
         return Err(Failure::input(format_args!("{bad} of {all} problems cannot be imported{how}")));
     }

@@ -7,6 +7,7 @@ use common::compare::Comparison;
 use common::fakes::{FALSE, Fake};
 use common::{Run, specs, text};
 use std::fs;
+use std::io::Write as _;
 
 const ANSWER: &str = "cat > /dev/null; echo";
 
@@ -101,9 +102,11 @@ fn what_is_done_is_not_done_again() {
     );
     assert_eq!(run(&["--repeat=2"]).0, 14);
     assert_eq!(comparison.records().len(), 13);
-    // Another build of a solver that has no version.
-    let program = fs::OpenOptions::new().append(true).open(fake.program()).expect("ours");
+    // Another build of a solver that has no version; the same program of another time is none.
+    let mut program = fs::OpenOptions::new().append(true).open(fake.program()).expect("ours");
     program.set_modified(std::time::SystemTime::UNIX_EPOCH).expect("ours");
+    assert_eq!(run(&[]).0, 14);
+    program.write_all(b"# another build\n").expect("ours");
     drop(program);
     assert_eq!(run(&[]).0, 17);
 }

@@ -46,6 +46,8 @@ pub(crate) fn run(solver: &str, instance: &str, status: RunStatus, wall_s: f64) 
         solver_s: Some(wall_s / 2.0),
         rounds: Some(1),
         reason_code: None,
+        processor: Some("a processor".to_owned()),
+        ended_ms: None,
     }
 }
 

@@ -1,0 +1,201 @@
+//! What may be typed behind `compare`.
+
+use super::{Reading, quantifiers, setting, states};
+use clap::{Args, Parser};
+use hyperplan_problem::answer::{Quantifiers, States};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+#[command(after_help = COMPARE_HELP)]
+pub(crate) struct Compare {
+    #[command(flatten)]
+    pub(crate) asked: Asked,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+    /// How many runs at a time; they slow each other down
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) jobs: u16,
+    /// Keeps each run on a core of its own
+    #[arg(long)]
+    pub(crate) pin: bool,
+    /// The folder for the log of all runs, runs.jsonl, and the reports
+    #[arg(long, value_name = "DIR", default_value = "comparison")]
+    pub(crate) out: PathBuf,
+    /// Keeps the queries of each run there
+    #[arg(long)]
+    pub(crate) queries: bool,
+    /// Runs nothing, but writes the same comparison of problem files for BenchExec
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["plan", "shard", "merge"])]
+    pub(crate) benchexec: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) cluster: Cluster,
+}
+
+/// What is run in a comparison; a plan has it, so that other machines run the same.
+#[derive(Clone, Debug, PartialEq, Args, Serialize, Deserialize)]
+#[group(skip)]
+pub(crate) struct Asked {
+    /// Problem files (.hp), SMT-LIB files (.smt2), folders with such files, or patterns (`'specs/**/*-10.hp'`); models and
+    /// formulas of other tools (.smv, .aag, .aig, .txt, .pddl, .hq), together one problem, or tables of such (.tsv); without any, what was run before
+    /// is reported again
+    #[arg(value_name = "FILE|FOLDER|PATTERN")]
+    pub(crate) files: Vec<String>,
+    /// Leaves out files that cannot be used, and says why, instead of running nothing
+    #[arg(long)]
+    pub(crate) skip_bad: bool,
+    /// The objectives, or `all`; files that have none of that name are left out
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_value = "all")]
+    pub(crate) objective: Vec<String>,
+    /// Solvers as for `solve`; here commas mean each of them by itself, not a race [default: builtin and all that are
+    /// installed]
+    #[arg(long, value_name = "SOLVER,...")]
+    pub(crate) solver: Option<String>,
+    /// How quantifiers are decided, each in turn
+    #[arg(long, value_parser = quantifiers(), value_name = "HOW,...", value_delimiter = ',', default_value = "auto")]
+    pub(crate) quantifiers: Vec<Quantifiers>,
+    /// How states are represented, each in turn
+    #[arg(long, value_parser = states(), value_name = "HOW,...", value_delimiter = ',', default_value = "auto")]
+    pub(crate) states: Vec<Option<States>>,
+    /// Replaces the value of a constant, by each of several in turn; with several constants, all combinations
+    #[arg(long, value_name = "NAME=VALUE,...|LO..HI", value_parser = settings)]
+    pub(crate) set: Vec<Settings>,
+    /// Seeds of the solver, each in turn
+    #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "0")]
+    pub(crate) seed: Vec<u64>,
+    /// How often to do each run
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) repeat: u32,
+    /// Wall time of each run
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
+    pub(crate) timeout: f64,
+    /// CPU time of each run, with everything it starts
+    #[arg(long, value_name = "SECONDS")]
+    pub(crate) cpu: Option<f64>,
+    /// Most memory of each run, with everything it starts
+    #[arg(long, value_name = "MIB")]
+    pub(crate) memory: Option<u64>,
+    /// Leaves strategies unchecked
+    #[arg(long)]
+    pub(crate) no_verify: bool,
+}
+
+impl Asked {
+    /// Whether nothing was said of what is to be run.
+    pub(crate) fn is_default(&self) -> bool {
+        #[derive(Parser)]
+        struct Nothing {
+            #[command(flatten)]
+            asked: Asked,
+        }
+        Nothing::try_parse_from([""]).is_ok_and(|nothing| nothing.asked == *self)
+    }
+}
+
+/// A comparison on several machines.
+#[derive(Debug, Args)]
+#[group(skip)]
+#[command(next_help_heading = "Several machines")]
+pub(crate) struct Cluster {
+    /// With files: runs nothing, but writes the list of all runs. Without: the runs are those of the list, as it was asked for
+    /// then
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plan: Option<PathBuf>,
+    /// Does a share of the runs only, the I-th of N, with a log of its own, runs-I-of-N.jsonl; or `next`: takes runs from a folder
+    /// below --out that other machines share, as long as there are some
+    #[arg(long, value_name = "I/N|next", value_parser = shard, conflicts_with = "merge")]
+    pub(crate) shard: Option<Shard>,
+    /// The name of that log: a scheduler that starts a share again must not have two programs write one.
+    #[arg(long, hide = true, requires = "shard")]
+    pub(crate) log: Option<String>,
+    /// Runs nothing, but puts other logs into that of --out and reports; of a plan, with what is missing
+    #[arg(long, value_name = "LOG", num_args = 1.., conflicts_with = "files")]
+    pub(crate) merge: Vec<PathBuf>,
+}
+
+/// Which runs are done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shard {
+    /// One of so many shares, from 0.
+    Share { index: usize, of: usize },
+    /// Whatever is left.
+    Next,
+}
+
+const COMPARE_HELP: &str =
+    "Every run is written to the log as soon as it has ended. The same command again does only \
+what is missing there: after an interruption, or where a file, a solver, an option or a limit has changed.
+
+Exit status: 0 nothing is wrong with any answer; 3 with --merge: runs of the plan are missing; 4 a solver gave a wrong answer \
+or model, or is not there; 5 hyperplan may be wrong; 2 bad usage or input; 130 interrupted.";
+
+/// A constant and its values.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Settings {
+    pub(crate) name: String,
+    pub(crate) values: Vec<String>,
+}
+
+/// The most values of a range.
+const VALUES: i64 = 10_000;
+
+fn settings(text: &str) -> Result<Settings, String> {
+    let (name, values) = setting(text)?;
+    let number = |text: &str| text.trim().parse::<i64>().ok();
+    let range = values.split_once("..").and_then(|(lo, hi)| number(lo).zip(number(hi)));
+    let values: Vec<String> = match range {
+        Some((lo, hi)) if lo > hi => return Err(format!("the range {lo}..{hi} is empty")),
+        Some((lo, hi)) if hi.checked_sub(lo).is_none_or(|size| size >= VALUES) => {
+            return Err(format!("the range {lo}..{hi} has more than {VALUES} values"));
+        }
+        Some((lo, hi)) => (lo..=hi).map(|value| value.to_string()).collect(),
+        None => values.split(',').map(|value| value.trim().to_owned()).collect(),
+    };
+    if values.iter().any(String::is_empty) {
+        return Err("expected NAME=VALUE, NAME=VALUE,VALUE or NAME=LO..HI".to_owned());
+    }
+    Ok(Settings { name, values })
+}
+
+/// More machines are hardly meant.
+const MOST_SHARES: usize = 100_000;
+
+fn shard(text: &str) -> Result<Shard, String> {
+    if text == "next" {
+        return Ok(Shard::Next);
+    }
+    let number = |text: &str| text.trim().parse::<usize>().ok();
+    match text.split_once('/').and_then(|(index, of)| number(index).zip(number(of))) {
+        Some((index, of)) if index >= 1 && index <= of && of <= MOST_SHARES => {
+            Ok(Shard::Share { index: index - 1, of })
+        }
+        Some(_) => Err(format!("expected a share from 1/N to N/N, with N at most {MOST_SHARES}")),
+        None => Err("expected a share, such as 1/4, or `next`".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_are_read() {
+        assert_eq!(shard("1/4"), Ok(Shard::Share { index: 0, of: 4 }));
+        assert_eq!(shard("next"), Ok(Shard::Next));
+        for wrong in ["", "0/4", "5/4", "1/0", "1", "a/b", "-1/4", "1/1000000"] {
+            assert!(shard(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_said_is_told_from_what_is() {
+        #[derive(Parser)]
+        struct Said {
+            #[command(flatten)]
+            asked: Asked,
+        }
+        let said = |words: &[&str]| Said::try_parse_from(words).expect("they are options").asked.is_default();
+        assert!(said(&[""]));
+        assert!(!said(&["", "a.hp"]) && !said(&["", "--timeout=5"]) && !said(&["", "--seed=1"]));
+    }
+}

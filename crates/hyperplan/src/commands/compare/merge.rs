@@ -1,0 +1,58 @@
+//! Logs of several machines, put together.
+
+use super::{comparison, doing, last, open, report};
+use crate::args;
+use crate::failure::{Exit, Failure, Result};
+use crate::files::cannot_write;
+use crate::output::Output;
+use hyperplan_compare::merge::added;
+use hyperplan_compare::{Log, Past, Record, prepare, tidy};
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+pub(super) fn run(args: &args::Compare, out: &mut Output) -> Result {
+    let listed = match &args.cluster.plan {
+        Some(file) => Some(comparison::read(file, &args.asked)?.1),
+        None if !args.asked.is_default() => {
+            return Err(Failure::input("--merge runs nothing; a plan says what is to be there: --plan FILE"));
+        }
+        None => None,
+    };
+    let more = read(&args.cluster.merge, out)?;
+    let folder = prepare(&args.out).map_err(|error| cannot_write(&args.out, &error))?;
+    let records = put_together(args, &more, out)?;
+    tidy(&folder);
+    let Some(listed) = listed else { return report(&last(records, out), &args.out, out) };
+    let wanted: BTreeSet<&str> = listed.iter().map(|run| run.key.as_str()).collect();
+    let ours: Vec<Record> = records.into_iter().filter(|run| wanted.contains(run.key.as_str())).collect();
+    let missing = listed.len() - doing::keys(&ours).len();
+    let status = report(&super::settle(ours, out), &args.out, out)?;
+    if missing == 0 {
+        return Ok(status);
+    }
+    out.error(format_args!("{missing} of {} runs of the plan are missing", listed.len()));
+    Ok(status.max(Exit::Undecided))
+}
+
+/// The runs of some logs.
+fn read(paths: &[PathBuf], out: &Output) -> Result<Vec<Record>> {
+    let mut all = Vec::new();
+    for path in paths {
+        let Past { records, notes } = Log::look(path).map_err(Failure::input)?;
+        notes.iter().for_each(|note| out.remark(format_args!("note: {note}")));
+        all.extend(records);
+    }
+    Ok(all)
+}
+
+/// Adds runs to the log of the folder; gives all that are in it then.
+pub(super) fn put_together(args: &args::Compare, more: &[Record], out: &Output) -> Result<Vec<Record>> {
+    let (mut log, mut records) = open(&args.out, out)?;
+    let new = added(&records, more).map_err(Failure::input)?;
+    for record in &new {
+        log.append(record).map_err(Failure::input)?;
+    }
+    out.remark(format_args!("note: {} of {} runs are new", new.len(), more.len()));
+    records.extend(new);
+    Ok(records)
+}
