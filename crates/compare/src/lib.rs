@@ -29,6 +29,7 @@ mod record;
 pub mod report;
 pub mod score;
 pub mod share;
+pub mod slurm;
 mod supervise;
 pub mod table;
 mod terminal;

@@ -8,6 +8,7 @@ use common::fakes::Fake;
 use common::{Run, command, specs, text};
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::{Duration, Instant};
@@ -239,4 +240,59 @@ fn contradictions_and_torn_lines_are_told() {
     let missing = comparison.run(&["--merge", "nowhere.jsonl"]);
     assert_eq!(missing.status, 2);
     assert!(missing.stderr.contains("cannot read nowhere.jsonl"), "{}", missing.stderr);
+}
+
+/// Whether a program is there; a template without its program is not tried.
+fn is_there(program: &str) -> bool {
+    let there =
+        std::process::Command::new(program).arg("--version").output().is_ok_and(|it| it.status.success());
+    if !there {
+        let _ = writeln!(std::io::stderr(), "{program} is missing: its template is not tried");
+    }
+    there
+}
+
+/// Runs a template of `docs/cluster` where there is a plan of some runs, and compares with one machine.
+fn template(program: &str, arguments: &[&str], environment: &[(&str, &str)]) {
+    if !is_there(program) {
+        return;
+    }
+    let comparison = Comparison::new();
+    comparison.queries(5);
+    let fake = Fake::new(ANSWER);
+    let binary = Path::new(env!("CARGO_BIN_EXE_hyperplan")).parent().expect("it is in a folder");
+    let path = format!("{}:{}", binary.display(), std::env::var("PATH").expect("there is one"));
+    let solver = format!("--solver={}", fake.program().display());
+    let options = format!("{solver} --timeout 20");
+    let here = |program: &str, arguments: &[&str]| {
+        let mut command = std::process::Command::new(program);
+        command.args(arguments).current_dir(comparison.folder()).env("PATH", &path).env("OPTIONS", &options);
+        command.env("HOME", comparison.folder());
+        good(Run::new(command.envs(environment.iter().copied()).output().expect("it is there")));
+    };
+    here("hyperplan", &["compare", "queries", &solver, "--timeout=20", "--plan=plan.jsonl"]);
+    if program == "snakemake" {
+        fs::remove_file(comparison.folder().join("plan.jsonl")).expect("the folder is ours");
+        let options = format!("options={options}");
+        here(program, &[arguments, &["--config", "files=queries", "shares=3", &options]].concat());
+    } else {
+        here("sh", arguments);
+    }
+    here("hyperplan", &["compare", "queries", &solver, "--timeout=20", "--out=whole"]);
+    let [all, whole] = ["all", "whole"].map(|name| statuses(&comparison.folder().join(name)));
+    assert_eq!(all, whole);
+}
+
+const TEMPLATES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/cluster");
+
+#[test]
+fn template_of_parallel() {
+    let script = format!("{TEMPLATES}/parallel.sh");
+    template("parallel", &[&script], &[("SHARES", "3"), ("JOBS", "2")]);
+}
+
+#[test]
+fn template_of_snakemake() {
+    let file = format!("{TEMPLATES}/Snakefile");
+    template("snakemake", &["--snakefile", &file, "--cores", "2"], &[]);
 }

@@ -10,6 +10,7 @@ use crate::{except, nothing};
 /// Files of libraries that may name flags, and why.
 const FLAGS: &[(&str, &str)] = &[
     ("crates/compare/src/pool.rs", "it writes the command lines of the runs that it starts"),
+    ("crates/compare/src/slurm.rs", "those of Slurm"),
     ("crates/solver/src/external/profile.rs", "those of solvers"),
     ("crates/solver/src/external/standalone.rs", "those of solvers"),
 ];

@@ -1,7 +1,7 @@
 //! What may be typed behind `compare`.
 
 use super::{Reading, quantifiers, setting, states};
-use clap::{Args, Parser};
+use clap::{Args, Parser, ValueEnum};
 use hyperplan_problem::answer::{Quantifiers, States};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -26,7 +26,7 @@ pub(crate) struct Compare {
     #[arg(long)]
     pub(crate) queries: bool,
     /// Runs nothing, but writes the same comparison of problem files for BenchExec
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["plan", "shard", "merge"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["plan", "shard", "merge", "engine"])]
     pub(crate) benchexec: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) cluster: Cluster,
@@ -111,6 +111,30 @@ pub(crate) struct Cluster {
     /// Runs nothing, but puts other logs into that of --out and reports; of a plan, with what is missing
     #[arg(long, value_name = "LOG", num_args = 1.., conflicts_with = "files")]
     pub(crate) merge: Vec<PathBuf>,
+    /// Prints each run on standard output too, as its line in the log: where nothing else comes back from a machine
+    #[arg(long, requires = "shard")]
+    pub(crate) echo: bool,
+    /// Has a cluster do the runs, as one array job, and waits for it; a signal cancels the job
+    #[arg(long, value_enum, value_name = "ENGINE", conflicts_with_all = ["shard", "merge"])]
+    pub(crate) engine: Option<Engine>,
+    /// How many tasks the job has [default: one for 10 minutes of expected work]
+    #[arg(long, value_name = "N", requires = "engine", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) tasks: Option<u16>,
+    /// Each task has its node for itself
+    #[arg(long, requires = "engine")]
+    pub(crate) exclusive: bool,
+    /// The nodes do not see the folder of --out: the runs come with what the job prints
+    #[arg(long, requires = "engine", conflicts_with = "queries")]
+    pub(crate) unshared: bool,
+    /// An option for the submission of the job, such as --submit=--partition=long
+    #[arg(long, value_name = "OPTION", requires = "engine", allow_hyphen_values = true)]
+    pub(crate) submit: Vec<String>,
+}
+
+/// Who does the runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Engine {
+    Slurm,
 }
 
 /// Which runs are done.

@@ -9,7 +9,7 @@ use crate::signals;
 use hyperplan_compare::plan::Run;
 use hyperplan_compare::{Event, Log, LogError, Record, Setting, cores, prepare, processor, run_all};
 use std::collections::{BTreeMap, BTreeSet};
-use std::io;
+use std::io::{self, Write as _};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -17,6 +17,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// How runs are done on this machine, until a signal comes.
 pub(super) struct Doing {
     setting: Setting,
+    /// Whether runs are printed too.
+    echo: bool,
     cancelled: Arc<AtomicBool>,
 }
 
@@ -43,9 +45,7 @@ impl Doing {
             processor: processor(),
             pinned: if args.pin { pinned(args.jobs.into())? } else { Vec::new() },
         };
-        let cancelled = Arc::new(AtomicBool::new(false));
-        signals::watch(&cancelled);
-        Ok(Doing { setting, cancelled })
+        Ok(Doing { setting, echo: args.cluster.echo, cancelled: cancelled() })
     }
 
     pub(super) fn folder(&self) -> &Path {
@@ -74,6 +74,12 @@ impl Doing {
                 Event::Started(run) => progress.started(&run.label()),
                 Event::Finished(record) => {
                     log.append(&record)?;
+                    if self.echo {
+                        // By one call, and whatever others have begun to write there.
+                        let line =
+                            format!("\n{}\n", serde_json::to_string(&record).map_err(io::Error::from)?);
+                        io::stdout().lock().write_all(line.as_bytes())?;
+                    }
                     progress.finished(labels.get(record.key.as_str()).map_or("", String::as_str), &record);
                     done(*record);
                 }
@@ -82,6 +88,13 @@ impl Doing {
         };
         run_all(runs, &self.setting, &self.cancelled, tell).map_err(Failure::input)
     }
+}
+
+/// A flag that is set when a signal comes.
+pub(super) fn cancelled() -> Arc<AtomicBool> {
+    let cancelled = Arc::new(AtomicBool::new(false));
+    signals::watch(&cancelled);
+    cancelled
 }
 
 /// The name of this machine.

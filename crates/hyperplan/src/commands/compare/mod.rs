@@ -1,8 +1,10 @@
 //! `hyperplan compare`: solvers and encodings over problems.
 
 mod benchexec;
+mod cluster;
 mod comparison;
 mod doing;
+mod gather;
 mod merge;
 mod shard;
 
@@ -31,6 +33,7 @@ pub(crate) fn run(args: &args::Compare, verbose: bool, out: &mut Output) -> Resu
         return benchexec::run(folder, &comparison, out);
     }
     match (&cluster.plan, cluster.shard) {
+        _ if cluster.engine.is_some() => cluster::run(args, &comparison, verbose, out),
         (_, Some(shard)) => shard::run(args, shard, &comparison, verbose, out),
         (Some(file), None) if comparison.listed.is_none() => comparison.write(file, &args.out, out),
         (_, None) => here(args, &comparison.runs(out)?, verbose, out),
