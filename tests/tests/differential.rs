@@ -22,6 +22,8 @@ use std::time::Instant;
 mod beliefs;
 #[path = "differential/costs.rs"]
 mod costs;
+#[path = "differential/cubes.rs"]
+mod cubes;
 #[path = "differential/minimize.rs"]
 mod minimize;
 #[path = "differential/quick.rs"]

@@ -13,6 +13,7 @@ mod folders;
 mod heard;
 mod html;
 mod judge;
+mod lanes;
 pub mod latex;
 mod links;
 pub mod list;
@@ -38,6 +39,7 @@ mod witness;
 pub mod work;
 
 pub use judge::{Claim, Fault, Finding, Judgement, Kind, judge};
+pub use lanes::{Finish, Lanes};
 pub use log::{Log, LogError, Past};
 pub use machine::{cores, processor};
 pub use pool::{Event, Setting, prepare, run_all, tidy};

@@ -131,7 +131,7 @@ pub fn run_all<E: From<io::Error> + Send>(
 
 /// The inputs of all supervisors. When they are closed, these end everything.
 #[derive(Default)]
-struct Lifelines(Mutex<State>);
+pub(crate) struct Lifelines(Mutex<State>);
 
 #[derive(Default)]
 struct State {
@@ -140,7 +140,7 @@ struct State {
 }
 
 impl Lifelines {
-    fn are_cut(&self) -> bool {
+    pub(crate) fn are_cut(&self) -> bool {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).cut
     }
 
@@ -166,7 +166,7 @@ impl Lifelines {
         self.are_cut()
     }
 
-    fn cut(&self) {
+    pub(crate) fn cut(&self) {
         let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         state.cut = true;
         state.open.clear();
@@ -186,13 +186,13 @@ fn one(
             let copy = folders.copy(run)?;
             let file = copy.as_deref().unwrap_or(&run.instance.file);
             let job = Job { cpu, ..query_job(run, query, file, &folders) };
-            let measured = measure(&job, setting, lifelines);
+            let measured = measure(&job, &setting.hyperplan, &setting.supervisor, lifelines);
             copy.as_deref().map(fs::remove_file).transpose()?;
             measured
         }
         Kind::Problem { objective } => {
             let job = Job { cpu, ..problem_job(run, objective, setting, &folders) };
-            measure(&job, setting, lifelines)
+            measure(&job, &setting.hyperplan, &setting.supervisor, lifelines)
         }
     };
     // The run that was interrupted is done again, and its queries with it.
@@ -203,10 +203,15 @@ fn one(
 }
 
 /// Has a supervisor do the job.
-fn measure(job: &Job, setting: &Setting, lifelines: &Lifelines) -> io::Result<Option<Measured>> {
-    let mut command = Command::new(&setting.hyperplan);
+pub(crate) fn measure(
+    job: &Job,
+    hyperplan: &Path,
+    supervisor: &[String],
+    lifelines: &Lifelines,
+) -> io::Result<Option<Measured>> {
+    let mut command = Command::new(hyperplan);
     // In a group of its own: what is typed at the terminal is for us.
-    command.args(&setting.supervisor).process_group(0);
+    command.args(supervisor).process_group(0);
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
     let mut child: Child = command.spawn()?;
     let mut line = serde_json::to_vec(job)?;

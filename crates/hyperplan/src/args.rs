@@ -221,6 +221,17 @@ pub(crate) struct Solve {
     /// Prints the strategy unchecked
     #[arg(long)]
     pub(crate) no_verify: bool,
+    /// Searches in N ways at once, each in a process with these limits: modes of quantifiers, encodings, solvers, seeds, of which
+    /// only those vary that are not given; the first verified answer ends the others
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), conflicts_with = "cubes")]
+    pub(crate) portfolio: Option<u16>,
+    /// Searches in at least N cases, by the first actions of the leading paths, each in a process with these limits, as many at
+    /// once as there are cores
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) cubes: Option<u16>,
+    /// One of these cases: how a path begins, by the places of actions among those of its system.
+    #[arg(long, value_name = "PATH=PLACE,...", value_parser = path_of_actions, hide = true)]
+    pub(crate) cube: Vec<WitnessPath>,
     /// Says on standard output too, in JSON, why an objective has no answer: for comparisons
     #[arg(long, hide = true)]
     pub(crate) failures: bool,

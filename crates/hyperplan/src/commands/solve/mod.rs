@@ -1,5 +1,7 @@
 //! `hyperplan solve`: from a problem file to a verified strategy.
 
+mod lanes;
+
 use crate::args::{self, SolveFormat};
 use crate::config;
 use crate::explain::{Explain, Why};
@@ -24,6 +26,7 @@ use hyperplan_problem::answer::{
 };
 use hyperplan_problem::{Objective, Quantifier, Strategy, Target, Trace, display};
 use hyperplan_render::{Board, Scene, TextStyle, actions_line, can_draw, table, text_map};
+use lanes::Team;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -34,6 +37,7 @@ const MAP_ROWS: u32 = 40;
 const TABLE_ROWS: usize = 60;
 
 pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Output) -> Result {
+    Team::check(args)?;
     let config = config::Solve::new(args, out)?;
     let (wish, loaded) = Wish::read(args, out)?;
     let explain = Explain { queries: config.plan.queries.as_deref() };
@@ -57,7 +61,8 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
         let own = plan::Config { watch: Watch::default(), ..config.plan.clone() };
         guard::watching(&own.watch);
         let waiting = Waiting::begin(&own.watch, verbose, out);
-        let solved = solve(&loaded, objective, &wish, &own, explain);
+        let team = Team { args, config: &own, out };
+        let solved = solve(&loaded, objective, &wish, &team, explain);
         drop(waiting);
         let (outcome, searched, open) = match solved {
             Ok(found) => found,
@@ -185,9 +190,15 @@ fn solve(
     loaded: &Loaded,
     objective: &Objective,
     wish: &Wish<'_>,
-    config: &plan::Config,
+    team: &Team<'_>,
     explain: Explain<'_>,
 ) -> Result<Solved, (Failure, ReasonCode)> {
+    if team.args.portfolio.is_some() || team.args.cubes.is_some() {
+        return Ok((team.solve(loaded, objective)?, None, Costs::default()));
+    }
+    let cube = team.cube(loaded, objective).map_err(|failure| (failure, ReasonCode::Unsupported))?;
+    let own = (!cube.is_empty()).then(|| plan::within(objective, &cube));
+    let (objective, config) = (own.as_ref().unwrap_or(objective), team.config);
     let name = &objective.name;
     let failed = |error: &plan::Error, value: String| {
         (explain.failure(format_args!("{name}{value}"), error), error.code())

@@ -1,0 +1,168 @@
+//! One objective on several cores: portfolios and cubes.
+#![cfg(unix)]
+
+mod common;
+
+use common::fakes::Fake;
+use common::{Run, command, hyperplan, text};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// Objectives of every kind of leading block, with what is so.
+const PROBLEM: &str = "
+system Walk {
+  state x: 0..6;
+  init x == 0 | x == 3;
+  action up, down, stay;
+  on up when x < 6 { x' = x + 1; }
+  on down when x > 0 { x' = x - 1; }
+  on stay { }
+}
+objective there { exists p. F[0,6] x[p] == 6 & G[0,2] x[p] < 3 }
+objective not_there { exists p. F[0,3] x[p] == 6 & G[0,1] x[p] < 3 }
+objective low { forall p. G[0,2] x[p] < 6 }
+objective lower { forall p. G[0,2] x[p] < 5 }
+objective both { exists p, q. F[0,3] (x[p] == 6 & x[q] == 0) & X x[q] == 1 }
+objective follow { exists p. forall q. x[p] == 0 & (G[0,3] action[p] == action[q] -> F[3,3] x[q] >= 3) }
+objective answer { forall p. exists q. G[0,3] action[p] != action[q] | x[p] == 3 }
+objective now { exists p. x[p] == 3 }
+";
+
+const VERDICTS: [(&str, &str); 8] = [
+    ("there", "realizable"),
+    ("not_there", "unrealizable"),
+    ("low", "realizable"),
+    ("lower", "unrealizable"),
+    ("both", "realizable"),
+    ("follow", "realizable"),
+    ("answer", ""),
+    ("now", "realizable"),
+];
+
+fn problem() -> (tempfile::TempDir, String) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("walk.hp");
+    std::fs::write(&file, PROBLEM).expect("the folder is ours");
+    let name = text(&file).to_owned();
+    (folder, name)
+}
+
+#[test]
+fn cases_and_ways_decide_as_one_search_does() {
+    let (_folder, file) = problem();
+    for (objective, expected) in VERDICTS {
+        let run = |more: &[&str]| {
+            let base = ["solve", &file, "--objective", objective, "--format=json"];
+            let run = hyperplan(&[&base, more].concat());
+            assert_eq!(run.json().len(), 1, "{objective} {more:?}: {}", run.stderr);
+            (run.status, run.json().remove(0), run.stderr)
+        };
+        let (status, alone, _) = run(&[]);
+        if !expected.is_empty() {
+            assert_eq!(alone["verdict"], expected, "{objective}");
+        }
+        for more in ["--cubes=2", "--cubes=20", "--portfolio=1", "--portfolio=3"] {
+            let (other, answer, said) = run(&[more]);
+            assert_eq!(
+                (other, &answer["verdict"]),
+                (status, &alone["verdict"]),
+                "{objective} {more}: {said}"
+            );
+            assert_eq!(answer["horizon"], alone["horizon"], "{objective} {more}");
+            assert_eq!(answer["witness"].is_null(), alone["witness"].is_null(), "{objective} {more}");
+            assert_eq!(answer["verified"], alone["verified"], "{objective} {more}");
+            let told = ["the first of ", "found in a case of ", "so it is in all of "];
+            assert!(told.iter().any(|words| said.contains(words)), "{objective} {more}: {said}");
+        }
+    }
+}
+
+#[test]
+fn what_was_found_is_printed_and_saved_as_always() {
+    let (folder, file) = problem();
+    let saved = folder.path().join("plan.json");
+    let run = hyperplan(&["solve", &file, "--objective=both", "--cubes=4", "--save", text(&saved)]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    assert!(
+        run.stdout.contains("both: realizable") && run.stdout.contains("verified by search"),
+        "{}",
+        run.stdout
+    );
+    let verified = hyperplan(&["verify", &file, text(&saved)]);
+    assert_eq!(verified.status, 0, "{}", verified.stderr);
+}
+
+/// A way that hangs loses, and is ended with all that it started.
+#[test]
+fn the_first_answer_ends_the_others() {
+    let (_folder, file) = problem();
+    let fake = Fake::new("trap '' TERM INT\nsetsid sleep 300 & note $!\nexec sleep 300");
+    let solver = format!("--solver='{}'", fake.program().display());
+    let start = Instant::now();
+    let run = Run::new(
+        command(&["solve", &file, "--objective=follow", &solver, "--portfolio=2"])
+            .env("TMPDIR", fake.temporary())
+            .output()
+            .expect("it was built"),
+    );
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    assert!(run.stderr.contains("the first of 2 was: --quantifiers=explicit"), "{}", run.stderr);
+    assert!(start.elapsed() < Duration::from_secs(60));
+    fake.is_clean().unwrap_or_else(|left| panic!("{left}"));
+}
+
+#[test]
+fn limits_and_signals_end_all() {
+    let (_folder, file) = problem();
+    let fake = Fake::new("trap '' TERM INT\nsetsid sleep 300 & note $!\nexec sleep 300");
+    let solver = format!("--solver='{}'", fake.program().display());
+    let arguments = ["solve", &file, "--objective=both", &solver, "--quantifiers=keep"];
+    let start = Instant::now();
+    let run = hyperplan(&[&arguments[..], &["--portfolio=2", "--timeout=1"]].concat());
+    assert_eq!(run.status, 3, "{}", run.stderr);
+    assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
+    fake.is_clean().unwrap_or_else(|left| panic!("{left}"));
+    for signal in ["TERM", "KILL"] {
+        let begun = fake.begun();
+        let mut child = command(&[&arguments[..], &["--cubes=3"]].concat())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("it was built");
+        let end = Instant::now() + Duration::from_secs(60);
+        while fake.begun() == begun {
+            assert!(Instant::now() < end, "it has not begun");
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        let killed = Command::new("kill").args(["-s", signal, &child.id().to_string()]).status();
+        assert!(killed.expect("every Unix has kill").success());
+        let status = child.wait().expect("it ends");
+        assert_eq!(status.code(), (signal == "TERM").then_some(143));
+        fake.is_clean().unwrap_or_else(|left| panic!("{signal}: {left}"));
+    }
+}
+
+#[test]
+fn what_goes_wrong_in_all_is_told() {
+    let (_folder, file) = problem();
+    let fake = Fake::new("exit 7");
+    let solver = format!("--solver='{}'", fake.program().display());
+    for more in ["--portfolio=2", "--cubes=3"] {
+        let run = hyperplan(&["solve", &file, "--objective=both", &solver, "--quantifiers=keep", more]);
+        assert_eq!(run.status, 4, "{more}: {}", run.stderr);
+        assert!(run.stderr.contains("error: "), "{}", run.stderr);
+    }
+    for (arguments, words) in [
+        (&["--cubes=2", "--portfolio=2"][..], "cannot be used with"),
+        (&["--cubes=2", "--minimize=T"], "--cubes cannot be used with --minimize"),
+        (&["--portfolio=2", "--queries=somewhere"], "--portfolio cannot be used with --queries"),
+        (&["--portfolio=2", "--solver=batsat,z3"], "not a race"),
+        (&["--portfolio=0"], "0 is not in"),
+    ] {
+        let run = hyperplan(&[&["solve", &file, "--objective=both"], arguments].concat());
+        assert_eq!(run.status, 2, "{arguments:?}: {}", run.stderr);
+        assert!(run.stderr.contains(words), "{arguments:?}: {}", run.stderr);
+    }
+    let run = hyperplan(&["solve", "-", "--cubes=2"]);
+    assert!(run.status == 2 && run.stderr.contains("takes a file"), "{}", run.stderr);
+}
