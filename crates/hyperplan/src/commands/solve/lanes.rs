@@ -22,6 +22,9 @@ use std::thread::available_parallelism;
 /// More cases are hardly meant: each is a process.
 const MOST_CUBES: usize = 10_000;
 
+/// A lane and its answer.
+type Won = (usize, Answer);
+
 /// Why there is no outcome.
 type Stop = (Failure, ReasonCode);
 
@@ -139,7 +142,7 @@ impl Team<'_> {
         lanes: &[Lane],
         at_a_time: usize,
         good: impl Fn(&Answer) -> bool,
-    ) -> Result<(Option<(usize, Answer)>, Vec<Ended>), Stop> {
+    ) -> Result<(Option<Won>, Vec<Ended>), Stop> {
         let failed = |error: io::Error| (Failure::input(error), ReasonCode::Io);
         let runner = Lanes {
             hyperplan: std::env::current_exe().map_err(failed)?,
