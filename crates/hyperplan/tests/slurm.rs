@@ -193,20 +193,29 @@ fn runs_come_back_with_what_is_printed() {
     let logs = fs::read_dir(comparison.out()).expect("it is there").flatten();
     let logs = logs.filter(|file| file.path().extension() == Some("jsonl".as_ref()));
     assert_eq!(logs.count(), 1);
-    // What a job cannot do is told: the file has gone that it is to run.
+    // What Slurm refuses is told.
     let broken = Comparison::new();
-    let files = broken.queries(2);
-    let option = "--submit=--export=NONE,SLURM_CONF";
-    let mut command =
-        broken.command(&[text(&files), &solver, "--engine=slurm", "--submit=--time=no", option]);
-    cluster.here(&mut command);
-    let run = Run::new(command.output().expect("it was built"));
+    let call = |words: &[&str]| {
+        let mut command =
+            broken.command(&[&["rooms.hp", "--objective=sp,iso", "--engine=slurm"], words].concat());
+        cluster.here(&mut command);
+        Run::new(command.output().expect("it was built"))
+    };
+    let run = call(&["--solver=builtin", "--submit=--time=no"]);
     assert_eq!(run.status, 2, "{}", run.stderr);
     assert!(
         run.stderr.contains("sbatch failed: ") && run.stderr.contains("0 of 2 runs are done"),
         "{}",
         run.stderr
     );
+    // Elsewhere there is no such file: no task can do anything, and that is given up with what one of them said.
+    let run = call(&["--solver=builtin", "--submit=--chdir=/"]);
+    assert_eq!(run.status, 3, "{}", run.stderr);
+    assert!(run.stderr.contains("2 runs get lost again and again"), "{}", run.stderr);
+    assert!(run.stderr.contains("rooms.hp: there is no such file"), "{}", run.stderr);
+    assert_eq!(cluster.queue(), "");
+    let run = call(&["--solver=builtin", "--pin", "--exclusive"]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
 }
 
 #[test]

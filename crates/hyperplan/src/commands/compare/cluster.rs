@@ -17,6 +17,7 @@ use hyperplan_compare::plan::{Run, sha256};
 use hyperplan_compare::share::{expected, most, shares};
 use hyperplan_compare::slurm::{self, Order, SlurmError, quoted};
 use hyperplan_compare::{Record, prepare, tidy};
+use hyperplan_outlet::one_line;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -208,7 +209,7 @@ impl Watch<'_> {
         let (mut look, mut heard) = (FIRST_LOOK, Instant::now());
         loop {
             let tasks = self.tasks();
-            gathered.all(&mut |record| self.progress.finished(&record.instance, record))?;
+            gathered.all(&mut |record| self.progress.finished(&label(record), record))?;
             if gathered.missing(self.runs).is_empty() || self.cancelled.load(Ordering::SeqCst) {
                 // What is left has nothing to do, or is to end.
                 return self.cancel(gathered);
@@ -217,7 +218,7 @@ impl Watch<'_> {
                 Ok(tasks) if tasks.is_empty() => {
                     // What was written last may take a moment to be seen here.
                     thread::sleep(FIRST_LOOK);
-                    gathered.all(&mut |record| self.progress.finished(&record.instance, record))?;
+                    gathered.all(&mut |record| self.progress.finished(&label(record), record))?;
                     return Ok(true);
                 }
                 Ok(tasks) => {
@@ -259,18 +260,27 @@ impl Watch<'_> {
             self.out
                 .error(format_args!("Slurm does not answer; to end the job: scancel --name {}", self.name));
         }
-        gathered.all(&mut |record| self.progress.finished(&record.instance, record))?;
+        gathered.all(&mut |record| self.progress.finished(&label(record), record))?;
         Ok(!interrupted || gathered.missing(self.runs).is_empty())
     }
 
-    /// The last line that the first task printed which printed one.
+    /// What the last task complained of that did.
     fn last_words(&self) -> String {
-        let said = super::gather::outputs(&self.folder).unwrap_or_default();
-        let said = said.iter().rev().filter_map(|path| std::fs::read_to_string(path).ok());
-        let mut said =
-            said.filter_map(|text| text.lines().rfind(|line| !line.trim().is_empty()).map(str::to_owned));
-        said.next().map_or_else(String::new, |line| format!("; the last that a task said: {line}"))
+        for path in super::gather::outputs(&self.folder).unwrap_or_default().iter().rev() {
+            let text = std::fs::read_to_string(path).unwrap_or_default();
+            let errors: Vec<&str> = text.lines().filter(|line| line.starts_with("error")).take(3).collect();
+            if !errors.is_empty() {
+                return format!("; a task said: {}", errors.join("; "));
+            }
+        }
+        String::new()
     }
+}
+
+/// What a run is called.
+fn label(record: &Record) -> String {
+    let words = [&record.instance].into_iter().chain(&record.set).chain([&record.solver]);
+    one_line(&words.map(String::as_str).collect::<Vec<_>>().join(" ")).into_owned()
 }
 
 fn cannot(error: SlurmError) -> Failure {
