@@ -122,6 +122,21 @@ fn limits_and_signals_end_all() {
     assert_eq!(run.status, 3, "{}", run.stderr);
     assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
     fake.is_clean().unwrap_or_else(|left| panic!("{left}"));
+    // Whose processes end when they are told has an answer.
+    let plain = Fake::new("exec sleep 300");
+    let solver = format!("--solver='{}'", plain.program().display());
+    for more in ["--portfolio=2", "--cubes=3"] {
+        let arguments = ["solve", &file, "--objective=both", &solver, "--quantifiers=keep", "--format=json"];
+        let run = hyperplan(&[&arguments[..], &[more, "--timeout=3"]].concat());
+        assert_eq!(run.status, 3, "{more}: {}", run.stderr);
+        let answer = &run.json()[0];
+        assert_eq!(
+            (&answer["verdict"], &answer["reason_code"]),
+            (&"unknown".into(), &"timeout".into()),
+            "{answer}"
+        );
+    }
+    plain.is_clean().unwrap_or_else(|left| panic!("{left}"));
     for signal in ["TERM", "KILL"] {
         let begun = fake.begun();
         let mut child = command(&[&arguments[..], &["--cubes=3"]].concat())

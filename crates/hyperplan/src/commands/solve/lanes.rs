@@ -14,13 +14,18 @@ use hyperplan_plan::{self as plan, Cube, Fallen, Outcome, Reason, cubes};
 use hyperplan_problem::answer::{Answer, Failed, Quantifiers, ReasonCode, Verdict, to_strategy};
 use hyperplan_problem::{Objective, Quantifier};
 use hyperplan_solver::{Identity, QuerySize, Spec, Unknown};
+use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::io;
 use std::ops::ControlFlow;
 use std::thread::available_parallelism;
+use std::time::{Duration, Instant};
 
 /// More cases are hardly meant: each is a process.
 const MOST_CUBES: usize = 10_000;
+
+/// How long lanes may take to say that their time is over; this process has a little longer.
+const GRACE: Duration = Duration::from_millis(400);
 
 /// A lane and its answer.
 type Won = (usize, Answer);
@@ -99,6 +104,7 @@ impl Team<'_> {
             self.run(objective, &lanes, number, |answer| answer.verdict != Verdict::Unknown)?;
         match found {
             Some((lane, answer)) => {
+                self.tell_lost(&lanes, &rest);
                 self.out.remark(format_args!("note: the first of {number} was: {}", lanes[lane].name));
                 outcome(loaded, objective, &answer)
             }
@@ -120,6 +126,7 @@ impl Team<'_> {
         let at_a_time = available_parallelism().map_or(1, usize::from).min(number);
         let (found, rest) = self.run(objective, &lanes, at_a_time, |answer| answer.verdict == decides)?;
         if let Some((lane, answer)) = found {
+            self.tell_lost(&lanes, &rest);
             self.out.remark(format_args!("note: found in a case of {}: {}", lanes.len(), lanes[lane].name));
             return outcome(loaded, objective, &answer);
         }
@@ -153,7 +160,15 @@ impl Team<'_> {
         let arguments: Vec<Vec<String>> =
             lanes.iter().map(|lane| self.arguments(objective, &lane.options)).collect();
         let mut rest = Vec::new();
-        let over = || self.config.deadline.passed();
+        let since = Cell::new(None);
+        let over = || {
+            let deadline = &self.config.deadline;
+            let late = |since: Instant| deadline.cancelled() || since.elapsed() > GRACE;
+            if deadline.passed() && since.get().is_none() {
+                since.set(Some(Instant::now()));
+            }
+            since.get().is_some_and(late)
+        };
         let found = runner.run(&arguments, over, |finish| match ended(&finish) {
             Ok(answer) if good(&answer) => {
                 self.hand_on(&finish.stderr);
@@ -183,7 +198,9 @@ impl Team<'_> {
         args.cross_check.iter().for_each(|solver| option("cross-check", solver.clone()));
         args.memory.iter().for_each(|mib| option("memory", mib.to_string()));
         if let Some(left) = self.config.deadline.remaining() {
-            option("timeout", left.as_secs_f64().max(0.01).to_string());
+            // So that there is time to hear that it is over.
+            let seconds = left.as_secs_f64();
+            option("timeout", (seconds - (seconds / 10.0).min(0.5)).max(0.01).to_string());
         }
         let given = |name: &str| own.iter().any(|word| word.starts_with(&format!("--{name}=")));
         for (name, value) in [
@@ -216,9 +233,9 @@ impl Team<'_> {
         };
         let quantifiers = args.encoding.quantifiers == Quantifiers::Auto;
         let builtin = args.solver == "builtin";
+        add(builtin && !matches!(Spec::embedded("cadical"), Some(Err(_)) | None), "solver", "batsat");
         add(quantifiers, "quantifiers", "explicit");
         add(quantifiers, "quantifiers", "cegis");
-        add(builtin && !matches!(Spec::embedded("cadical"), Some(Err(_)) | None), "solver", "batsat");
         add(args.encoding.states.is_none(), "states", "bitvec");
         if builtin && number > 3 {
             for spec in Configured::new(self.out).catalog()?.installed() {
@@ -254,32 +271,43 @@ impl Team<'_> {
         mut rest: Vec<Ended>,
     ) -> Result<Outcome, Stop> {
         rest.sort_by_key(|(lane, _)| *lane);
-        // A wrong model or strategy is not to be lost among what was undecided.
-        let worst =
-            rest.iter().filter_map(|(_, end)| end.as_ref().err()).max_by_key(|(failure, _)| failure.status);
-        let is_bug = worst.is_some_and(|(failure, _)| failure.status >= Exit::Bug);
         let answers: Vec<&Answer> = rest.iter().filter_map(|(_, end)| end.as_ref().ok()).collect();
         let unknown = answers.iter().find(|answer| answer.verdict == Verdict::Unknown);
-        match (unknown.or(answers.first()), worst) {
-            (None, _) | (_, Some(_)) if is_bug || answers.is_empty() && !rest.is_empty() => {
-                let first = rest
-                    .into_iter()
-                    .find_map(|(_, end)| end.err().filter(|(f, _)| !is_bug || f.status >= Exit::Bug));
-                Err(first.unwrap_or_else(|| (Failure::said(), ReasonCode::Bug)))
-            }
-            (None, _) => {
-                let reason = self.config.deadline.reason();
-                Err((
-                    Failure::new(Exit::Undecided, format_args!("{}: {reason}", objective.name)),
-                    ReasonCode::Timeout,
-                ))
-            }
-            (Some(answer), _) => {
-                let mut outcome = outcome(loaded, objective, answer)?;
-                outcome.verdict = Verdict::Unknown;
-                outcome.witness = None;
-                outcome.reason = Some(self.reasons(lanes, &rest));
-                Ok(outcome)
+        // A bug of ours is not to be lost among what was undecided.
+        let is_bug = |(_, end): &Ended| end.as_ref().is_err_and(|(failure, _)| failure.status >= Exit::Bug);
+        if let (Some(answer), false) = (unknown.or(answers.first()), rest.iter().any(is_bug)) {
+            let outcome = outcome(loaded, objective, answer)?;
+            let reason = Some(self.reasons(lanes, &rest));
+            return Ok(Outcome {
+                verdict: Verdict::Unknown,
+                witness: None,
+                verified: None,
+                reason,
+                ..outcome
+            });
+        }
+        if let Some(place) = rest.iter().position(is_bug)
+            && let (_, Err(stop)) = rest.swap_remove(place)
+        {
+            return Err(stop);
+        }
+        // What was asked for says most: the others may be ways that cannot be had.
+        let first =
+            rest.into_iter().filter(|_| !self.config.deadline.passed()).find_map(|(_, end)| end.err());
+        Err(first.unwrap_or_else(|| {
+            let reason = self.config.deadline.reason();
+            let failure = Failure::new(Exit::Undecided, format_args!("{}: {reason}", objective.name));
+            (failure, ReasonCode::Timeout)
+        }))
+    }
+
+    /// Tells of lanes that failed before another one decided.
+    fn tell_lost(&self, lanes: &[Lane], rest: &[Ended]) {
+        for (lane, end) in rest {
+            if let Err((failure, _)) = end
+                && failure.status >= Exit::Solver
+            {
+                self.out.remark(format_args!("warning: {} failed: {}", lanes[*lane].name, failure.message));
             }
         }
     }
@@ -288,6 +316,12 @@ impl Team<'_> {
     fn reasons(&self, lanes: &[Lane], rest: &[Ended]) -> Reason {
         if self.config.deadline.passed() {
             return self.config.deadline.reason().into();
+        }
+        let late = |(_, end): &Ended| {
+            end.as_ref().is_ok_and(|answer| answer.reason_code == Some(ReasonCode::Timeout))
+        };
+        if rest.iter().any(late) {
+            return Unknown::Timeout.into();
         }
         let mut told = BTreeSet::new();
         let mut reasons = Vec::new();
