@@ -257,9 +257,10 @@ impl Team<'_> {
         Ok(ways.into_iter().map(|options| Lane { name: name(&options), options }).collect())
     }
 
-    /// Says what the winner said besides.
+    /// Says what the winner said besides; not how far it had been.
     fn hand_on(&self, stderr: &str) {
-        stderr.lines().filter(|line| !line.trim().is_empty()).for_each(|line| self.out.remark(line));
+        let said = stderr.lines().filter(|line| line.starts_with("note: ") || line.starts_with("warning"));
+        said.for_each(|line| self.out.remark(line));
     }
 
     /// What is left where no lane decided.
