@@ -1,8 +1,12 @@
 //! What may be typed. What is meant by it is decided in [`crate::config`].
 
+mod certify;
 mod compare;
+mod verify;
 
+pub(crate) use certify::Certify;
 pub(crate) use compare::{Asked, Compare, Settings, Shard};
+pub(crate) use verify::Verify;
 
 use crate::foreign::Foreign;
 pub(crate) use crate::reading::{Others, Reading};
@@ -159,6 +163,8 @@ pub(crate) enum Command {
     Check(Check),
     /// Check a strategy without any solver
     Verify(Verify),
+    /// Check certificates that there is no strategy, without any solver
+    Certify(Certify),
     /// Draw the map, with the paths of a strategy
     Plot(Plot),
     /// Write a problem file from models and formulas of other tools
@@ -218,6 +224,10 @@ pub(crate) struct Solve {
     /// Keeps every query sent to the solver, with its replies as comments
     #[arg(long, value_name = "DIR")]
     pub(crate) queries: Option<PathBuf>,
+    /// Where there is no strategy (or, for `forall`, no counterexample), writes certificates of that into this folder, for
+    /// `hyperplan certify`
+    #[arg(long, value_name = "DIR")]
+    pub(crate) proof: Option<PathBuf>,
     /// Prints the strategy unchecked
     #[arg(long)]
     pub(crate) no_verify: bool,
@@ -429,29 +439,6 @@ pub(crate) struct Check {
     pub(crate) print: bool,
     #[command(flatten)]
     pub(crate) limit: Limit,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct Verify {
-    #[command(flatten)]
-    pub(crate) problem: Problem,
-    #[command(flatten)]
-    pub(crate) limit: Limit,
-    #[command(flatten)]
-    pub(crate) plan: Plan,
-    #[command(flatten)]
-    pub(crate) reading: Reading,
-    /// What a solver printed for a query that `emit` wrote: its model, by (get-model) or (get-value (...));
-    /// `-` is standard input
-    #[arg(long, value_name = "FILE", conflicts_with = "actions")]
-    pub(crate) model: Option<PathBuf>,
-    /// Saves the strategy that the model describes, as JSON
-    #[arg(long, value_name = "FILE.json", requires = "model")]
-    pub(crate) save: Option<PathBuf>,
-    #[command(flatten)]
-    pub(crate) selection: Selection,
-    #[command(flatten)]
-    pub(crate) output: Output,
 }
 
 /// A strategy of the user's.

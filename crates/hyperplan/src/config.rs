@@ -3,7 +3,7 @@
 use crate::args::{self, ColorWhen};
 use crate::configuration::Configured;
 use crate::failure::{Failure, Result};
-use crate::files::{self, check_writable};
+use crate::files::{check_writable, make_folder};
 use crate::guard;
 use crate::output::Output;
 use crate::report::Picture;
@@ -27,12 +27,7 @@ impl Solve {
         for path in args.plot.iter().chain(&args.save) {
             check_writable(path)?;
         }
-        if let Some(folder) = &args.queries {
-            std::fs::create_dir_all(folder).map_err(|e| {
-                let reason = files::reason(&e);
-                Failure::input(format_args!("cannot make directory {}: {reason}", folder.display()))
-            })?;
-        }
+        args.queries.iter().chain(&args.proof).try_for_each(|folder| make_folder(folder))?;
         if args.memory == Some(0) {
             return Err(Failure::input("--memory 0 leaves no memory to the solver"));
         }

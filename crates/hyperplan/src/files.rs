@@ -105,3 +105,10 @@ pub(crate) fn check_writable(path: &Path) -> Result<()> {
     // It is gone when it is closed.
     tempfile::tempfile_in(folder).map(|_| ()).map_err(|e| cannot(reason(&e)))
 }
+
+/// The folder, made if it is not there.
+pub(crate) fn make_folder(folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder).map_err(|e| {
+        Failure::input(format_args!("cannot make directory {}: {}", folder.display(), reason(&e)))
+    })
+}

@@ -34,6 +34,12 @@ pub(crate) fn gather(cli: &mut Cli) -> Result<()> {
                 return Err(Failure::input("a strategy is needed: STRATEGY.json, --actions or --model"));
             }
         }
+        Command::Certify(args) => {
+            let all = std::mem::take(&mut args.folder).into_iter();
+            let (mut more, folders) = all.partition(|path| is_foreign(path));
+            args.folder = folders;
+            args.foreign = found(&args.file, &mut more, &args.reading)?;
+        }
         Command::Plot(args) => {
             let mut more = behind(&mut args.plan);
             args.problem.foreign = found(&args.problem.file, &mut more, &args.reading)?;

@@ -17,6 +17,7 @@ mod output;
 mod parameter;
 mod plans;
 mod progress;
+mod proof;
 mod reading;
 mod report;
 mod signals;

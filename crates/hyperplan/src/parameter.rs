@@ -163,7 +163,8 @@ impl<'a> Parameter<'a> {
         }
     }
 
-    fn problem(&self, value: i64) -> Result<Problem> {
+    /// The problem for a value.
+    pub(crate) fn problem(&self, value: i64) -> Result<Problem> {
         let (lowered, sources) = self.lower(value);
         if lowered.has_errors() {
             let errors: Vec<_> = lowered.diagnostics.into_iter().filter(|d| d.is_error()).collect();

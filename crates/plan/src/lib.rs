@@ -21,6 +21,7 @@ mod lint;
 mod minimize;
 mod oracle;
 mod prepare;
+mod prove;
 mod race;
 mod search;
 mod solve;
@@ -35,5 +36,6 @@ pub use fact::{Because, Error, Fallen, Fault, Note, Reason, Unsupported, Worth, 
 pub use hyperplan_encode::{Error as EncodeError, Limits};
 pub use lint::{Budget, Lints, Uninspected, lint, lint_systems};
 pub use minimize::{Least, MinimizeError, ProblemOf, minimize};
+pub use prove::{Proved, Unproved, prove};
 pub use solve::solve;
 pub use watch::{Stage, Standing, Watch};

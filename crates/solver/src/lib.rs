@@ -16,6 +16,7 @@ mod session;
 mod transcript;
 
 pub use deadline::Deadline;
+pub use embedded::Refuter;
 pub use error::{Error, Unknown};
 #[doc(hidden)]
 pub use external::understand_output;

@@ -1,5 +1,6 @@
 //! One module for each command.
 
+mod certify;
 mod check;
 mod compare;
 mod emit;
@@ -30,6 +31,7 @@ pub(crate) fn run(cli: &Cli, out: &mut Output) -> Result {
         Command::Horizon(args) => horizon::run(args, out),
         Command::Check(args) => check::run(args, verbose, out),
         Command::Verify(args) => verify::run(args, out),
+        Command::Certify(args) => certify::run(args, out),
         Command::Import(args) => import::run(args, out),
         Command::Plot(args) => plot::run(args, out),
         Command::Compare(args) => compare::run(args, verbose, out),

@@ -60,6 +60,9 @@ pub struct Answer {
     /// What was to be as small as possible, under the strategy found, what counts most first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub costs: Vec<CostValue>,
+    /// Files with certificates of what is impossible, where these were asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub certificates: Vec<String>,
 }
 
 /// The value of a sum of costs.

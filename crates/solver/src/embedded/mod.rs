@@ -11,8 +11,14 @@ mod budget;
 mod cadical;
 mod cnf;
 mod engine;
+mod refute;
 mod table;
+#[cfg(feature = "cadical")]
+mod trace;
+#[cfg(feature = "cadical")]
+mod traced;
 mod worker;
 
 pub(crate) use engine::Engine;
+pub use refute::Refuter;
 pub(crate) use table::{BUILTIN, backend, names};

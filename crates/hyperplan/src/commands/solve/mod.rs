@@ -14,6 +14,7 @@ use crate::nusmv;
 use crate::output::Output;
 use crate::parameter::Searched;
 use crate::plans;
+use crate::proof::Prover;
 use crate::report::{Picture, json, write_picture};
 use crate::waiting::Waiting;
 use crate::wish::Wish;
@@ -57,13 +58,7 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
             let name = &objective.name;
             out.remark(format_args!("note: {name}: its own `minimize` is left aside for `--minimize`"));
         }
-        guard::doing("searching for a strategy");
-        let own = plan::Config { watch: Watch::default(), ..config.plan.clone() };
-        guard::watching(&own.watch);
-        let waiting = Waiting::begin(&own.watch, verbose, out);
-        let team = Team { args, config: &own, out };
-        let solved = solve(&loaded, objective, &wish, &team, explain);
-        drop(waiting);
+        let solved = watched(&loaded, objective, &wish, args, (&config.plan, explain, verbose), out);
         let (outcome, searched, open) = match solved {
             Ok(found) => found,
             Err((failure, reason_code)) => {
@@ -85,7 +80,15 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
         let own = outcome.reason.as_ref().filter(|_| searched.is_none());
         let own = own.or(open.undecided.as_ref()).map(|reason| Why::new(reason, explain));
         let why = own.as_ref().or_else(|| searched?.undecided.as_ref());
-        let answer = answer(loaded, objective, &outcome, (searched, open.costs), why, total);
+        let mut answer = answer(loaded, objective, &outcome, (searched, open.costs), why, total);
+        match certificates(args, &config, (&answer, &outcome), &wish, (loaded, objective), out) {
+            Ok((made, status)) => (answer.certificates, worst) = (made, worst.max(status)),
+            Err(failure) => {
+                out.failure(&failure);
+                worst = worst.max(failure.status);
+                continue;
+            }
+        }
         let foreign = args.problem.foreign.as_ref();
         let found = Found { loaded, objective, outcome: &outcome, answer: &answer, searched, foreign };
         if let Some(path) = &config.save {
@@ -113,6 +116,37 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
         worst = worst.max(failure.status);
     }
     Ok(worst)
+}
+
+/// As [`solve`], saying how far it is where that takes long.
+fn watched(
+    loaded: &Loaded,
+    objective: &Objective,
+    wish: &Wish<'_>,
+    args: &args::Solve,
+    (config, explain, verbose): (&plan::Config, Explain<'_>, bool),
+    out: &Output,
+) -> Result<Solved, (Failure, ReasonCode)> {
+    guard::doing("searching for a strategy");
+    let own = plan::Config { watch: Watch::default(), ..config.clone() };
+    guard::watching(&own.watch);
+    let _waiting = Waiting::begin(&own.watch, verbose, out);
+    solve(loaded, objective, wish, &Team { args, config: &own, out }, explain)
+}
+
+/// Certifies what is said to be impossible, if that is wanted.
+fn certificates(
+    args: &args::Solve,
+    config: &config::Solve,
+    (answer, outcome): (&Answer, &plan::Outcome),
+    wish: &Wish<'_>,
+    about: (&Loaded, &Objective),
+    out: &mut Output,
+) -> Result<(Vec<String>, Exit)> {
+    let Some(folder) = &args.proof else { return Ok((Vec::new(), Exit::Good)) };
+    guard::doing("making certificates");
+    let prover = Prover { folder, set: &args.problem.set, deadline: &config.plan.deadline };
+    prover.prove(about, (outcome, answer.minimized.as_ref()), wish, out)
 }
 
 /// Refuses formats in which what is asked for cannot be told.
@@ -279,6 +313,7 @@ fn answer(
         },
         minimized: searched.map(|searched| searched.minimized.clone()),
         costs,
+        certificates: Vec::new(),
     }
 }
 
@@ -393,6 +428,13 @@ impl<'a> Found<'a> {
             text.push_str(&self.strategy(strategy, color));
         }
         text.push_str(&self.checked());
+        match self.answer.certificates.as_slice() {
+            [] => {}
+            [one] => text.push_str(&format!("certificate: {}\n", one_line(one))),
+            [first, .., last] => {
+                text.push_str(&format!("certificates: {} to {}\n", one_line(first), one_line(last)))
+            }
+        }
         text.push_str(&self.effort(verbose));
         text
     }

@@ -1,0 +1,163 @@
+//! `hyperplan certify`: whether certificates prove what they claim, without any solver.
+
+use crate::args::{self, Certify};
+use crate::config;
+use crate::failure::{Exit, Failure, Result};
+use crate::files::{self, reason};
+use crate::guard;
+use crate::load::Loaded;
+use crate::output::Output;
+use crate::proof::{DESCRIPTION, REFUTATION, status};
+use crate::report::json;
+use hyperplan_certify::{Certificate, Checked, Claim, Error, dimacs, pseudo_boolean, refutation};
+use hyperplan_outlet::one_line;
+use hyperplan_solver::Deadline;
+use serde::Serialize;
+use std::io;
+use std::path::{Path, PathBuf};
+
+pub(crate) fn run(args: &Certify, out: &mut Output) -> Result {
+    let deadline = config::deadline(args.limit.timeout, None)?;
+    let [folder] = args.folder.as_slice() else {
+        return Err(Failure::input("certificates are in one folder"));
+    };
+    if let Some(folder) = &args.export {
+        files::make_folder(folder)?;
+    }
+    let mut worst = Exit::Good;
+    let wanted = args.selection.objective.as_deref().filter(|name| *name != "all");
+    let mut checked = 0;
+    for file in descriptions(folder)? {
+        let name = files::name(&file);
+        let certificate = Certificate::read(&file)
+            .map_err(|error| Failure::new(status(&error), format_args!("{name}: {error}")))?;
+        if wanted.is_some_and(|wanted| wanted != certificate.objective) {
+            continue;
+        }
+        checked += 1;
+        guard::doing("checking a certificate");
+        let result = one(args, &certificate, &file, &deadline, out)?;
+        let report = Report::new(&certificate, &name, &result);
+        match args.output.format {
+            args::Format::Json => out.line(json(&report)?)?,
+            args::Format::Text => out.line(report.text())?,
+        }
+        worst = worst.max(result.as_ref().map_or_else(status, |_| Exit::Good));
+    }
+    if checked == 0 {
+        let what = wanted.map_or(String::new(), |name| format!(" for objective {name}"));
+        return Err(Failure::input(format_args!("{} has no certificate{what}", folder.display())));
+    }
+    Ok(worst)
+}
+
+/// The descriptions of a folder's certificates, by name.
+fn descriptions(folder: &Path) -> Result<Vec<PathBuf>> {
+    let cannot =
+        |e: io::Error| Failure::input(format_args!("cannot read {}: {}", folder.display(), reason(&e)));
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(cannot)? {
+        let path = entry.map_err(cannot)?.path();
+        if path.extension().is_some_and(|ending| ending == DESCRIPTION) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// Checks one certificate against the problem with the constants that it was made for.
+fn one(
+    args: &Certify,
+    certificate: &Certificate,
+    file: &Path,
+    deadline: &Deadline,
+    out: &Output,
+) -> Result<Result<Checked, Error>> {
+    let set = certificate.set.iter().map(|set| set.split_once('=').unwrap_or((set, "")));
+    let problem = args::Problem {
+        file: args.file.clone(),
+        set: set.map(|(name, value)| (name.to_owned(), value.to_owned())).collect(),
+        foreign: args.foreign.clone(),
+    };
+    let loaded = Loaded::read(&problem, out)?;
+    let Some(objective) = loaded.problem.objective(&certificate.objective) else {
+        return Ok(Err(Error::Foreign(format!("objective {}", certificate.objective))));
+    };
+    let stop = || deadline.passed();
+    let beside = file.with_extension(REFUTATION);
+    let result = refutation(&beside)
+        .and_then(|mut proof| certificate.check(&loaded.problem, objective, &mut proof, &stop));
+    if let (Some(folder), Ok(_)) = (&args.export, &result) {
+        let name = file.file_stem().unwrap_or_default();
+        let path = |ending: &str| folder.join(name).with_added_extension(ending);
+        let exported = |error: Error| match error {
+            Error::Io(error) => error,
+            error => io::Error::other(error),
+        };
+        let mut count = (0, None);
+        files::write(&path("cnf"), |to| {
+            let branches = certificate.branches(&loaded.problem, objective).map_err(exported)?;
+            count = dimacs(&loaded.problem, objective, &branches, to, &stop).map_err(exported)?;
+            Ok(())
+        })?;
+        let again = || refutation(&beside).map_err(exported);
+        files::write(&path("lrat"), |to| io::copy(&mut again()?, to).map(drop))?;
+        files::write(&path("pbp"), |to| pseudo_boolean(&mut again()?, count, to).map_err(exported))?;
+    }
+    Ok(result)
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    certificate: &'a str,
+    objective: &'a str,
+    /// Constants with other values than in the file.
+    set: &'a [String],
+    claim: Claim,
+    /// `certified`, or `refused`.
+    verdict: &'static str,
+    reason: Option<String>,
+    instances: Option<usize>,
+    variables: Option<i32>,
+    clauses: Option<u64>,
+    steps: Option<u64>,
+}
+
+impl<'a> Report<'a> {
+    fn new(certificate: &'a Certificate, name: &'a str, result: &Result<Checked, Error>) -> Self {
+        let of = |get: fn(&Checked) -> u64| result.as_ref().ok().map(get);
+        Report {
+            certificate: name,
+            objective: &certificate.objective,
+            set: &certificate.set,
+            claim: certificate.claim,
+            verdict: if result.is_ok() { "certified" } else { "refused" },
+            reason: result.as_ref().err().map(Error::to_string),
+            instances: result.as_ref().ok().map(|checked| checked.instances),
+            variables: result.as_ref().ok().map(|checked| checked.variables),
+            clauses: of(|checked| checked.clauses),
+            steps: of(|checked| checked.steps),
+        }
+    }
+
+    fn text(&self) -> String {
+        let with = match self.set.is_empty() {
+            true => String::new(),
+            false => format!(" with {}", one_line(&self.set.join(", "))),
+        };
+        let claim = match self.claim {
+            Claim::NoStrategy => "unrealizable",
+            Claim::NoCounterexample => "realizable",
+        };
+        let about = format!("{}{with}: {claim}", one_line(self.objective));
+        match (&self.reason, self.instances, self.clauses, self.steps) {
+            (None, Some(instances), Some(clauses), Some(steps)) => {
+                format!("{about}, certified: {instances} instances, {clauses} clauses, {steps} steps")
+            }
+            (reason, ..) => {
+                format!("{about} is not certified: {}", one_line(reason.as_deref().unwrap_or("no reason")))
+            }
+        }
+    }
+}
