@@ -46,6 +46,10 @@ fn long_chains_are_read() {
     let chain = "if 0 == 1 then 2 else ".repeat(MANY);
     let run = check(format!("const A = {chain}3;\n{start};\n}}\nobjective o {{ exists p. a[p] }}\n"));
     assert_eq!(run.status, 0, "{}", run.stderr);
+    // Nor do statements that come again.
+    let many = ["init x == 0;", "absorb x == 1;", "trans x' == x | x == 0;"].map(|part| part.repeat(MANY));
+    let run = check(format!("{start};\n{}\n}}\nobjective o {{ exists p. a[p] }}\n", many.concat()));
+    assert_eq!(run.status, 0, "{}", run.stderr);
     // What is doubtful of so long a formula is another question.
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("f.hp");

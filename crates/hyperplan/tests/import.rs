@@ -109,6 +109,28 @@ fn instances_of_another_tool_have_their_right_verdicts() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// The goal is 16 steps away on each of these maps, and a plan for every start has 13; one step less will not do.
+#[test]
+fn planning_models_of_other_tools_have_their_true_distances() {
+    let Some(folder) = peers().and_then(|folder| Some(folder.parent()?.join("hyperqb1/planning"))) else {
+        return;
+    };
+    let own = tempfile::tempdir().expect("a temporary folder");
+    let reach = own.path().join("reach.hq");
+    std::fs::write(&reach, "exists A. F(GOAL[A])\n").expect("it can be written");
+    let robust = folder.join("robotic_robustness_formula.hq");
+    for size in [100, 400, 1600, 3600] {
+        for (kind, formula, least) in [("sp", &reach, 16), ("robustness", &robust, 13)] {
+            let model = folder.join(format!("robotic_{kind}_{size}.smv"));
+            for (steps, status) in [(least - 1, 1), (least, 0)] {
+                let steps = steps.to_string();
+                let run = hyperplan(&["solve", text(&model), text(formula), "--bound", &steps, "--quiet"]);
+                assert_eq!(run.status, status, "{kind} {size}, K = {steps}: {}", run.stderr);
+            }
+        }
+    }
+}
+
 /// A table of problems, with the folder of a comparison beside it.
 fn table(rows: &[(&str, &str, &str)]) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().expect("a temporary folder");

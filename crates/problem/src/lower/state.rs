@@ -10,6 +10,8 @@ use crate::ids::VarId;
 use crate::system::Var;
 use hyperplan_syntax::{Diagnostic, Span};
 use indexmap::IndexMap;
+use rustc_hash::FxHashSet;
+use std::cell::RefCell;
 use typed_index_collections::TiVec;
 
 /// What the names of one system stand for, and where they are declared, in the order of declaration.
@@ -28,6 +30,8 @@ pub(crate) struct StateContext<'a> {
     /// Whether part of the system is missing after an error, so that unknown names mean nothing.
     pub(crate) poisoned: bool,
     pub(crate) limits: Limits,
+    /// The values of enumerations, of as many variables as are counted.
+    pub(crate) values: RefCell<(usize, FxHashSet<String>)>,
 }
 
 impl Context for StateContext<'_> {
@@ -52,7 +56,14 @@ impl Context for StateContext<'_> {
     }
 
     fn is_enum_value(&self, name: &str) -> bool {
-        self.vars.iter().any(|var| has_value(&var.ty, name))
+        let (counted, values) = &mut *self.values.borrow_mut();
+        for var in &self.vars.raw[*counted..] {
+            if let Type::Enum(own) = &var.ty {
+                values.extend(own.iter().cloned());
+            }
+        }
+        *counted = self.vars.len();
+        values.contains(name)
     }
 
     fn unknown(&mut self, name: &str, span: Span) -> Diagnostic {

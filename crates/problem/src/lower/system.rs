@@ -8,7 +8,7 @@ use super::expr::{Context, truth, typed};
 use super::labels;
 use super::limits::{Limits, MAX_RANGE};
 use super::state::{Names, StateContext, TransContext};
-use super::typed::{EnumType, and, or};
+use super::typed::{EnumType, and_also, or_else};
 use super::{also, costs, graphs, maps};
 use crate::edges::Edges;
 use crate::expr::{Expr, Leaf, Type};
@@ -17,6 +17,7 @@ use crate::system::{Label, System, Var};
 use hyperplan_syntax::ast::{self, ExprKind, Ident, SystemItem, SystemKind};
 use hyperplan_syntax::{Diagnostic, Span};
 use rustc_hash::FxHashMap;
+use std::cell::RefCell;
 use typed_index_collections::TiVec;
 
 /// Names with a meaning of their own in objectives.
@@ -34,6 +35,7 @@ pub(crate) fn lower_system(ast: &ast::System, env: &mut Env) -> (System, bool) {
         system: ast.name.name.clone(),
         poisoned: base.poisoned,
         limits: Limits::default(),
+        values: RefCell::default(),
     };
     declare_base(&mut cx, &base.labels);
     variables(&mut cx, ast);
@@ -292,18 +294,18 @@ fn lower_item(
         SystemItem::Cost(name, e) => system.costs.extend(costs::lower_cost(cx, name, e, system, actions)),
         SystemItem::Init(e) => {
             if let Some(e) = truth(cx, e) {
-                system.init = and([std::mem::replace(&mut system.init, Expr::TRUE), e]);
+                and_also(&mut system.init, e);
             }
         }
         SystemItem::Absorb(e) => {
             if let Some(e) = truth(cx, e) {
-                system.absorb = or([std::mem::replace(&mut system.absorb, Expr::FALSE), e]);
+                or_else(&mut system.absorb, e);
             }
         }
         SystemItem::Trans(e) => {
             let mut step = TransContext::new(cx);
             if let Some(e) = truth(&mut step, e) {
-                system.trans = and([std::mem::replace(&mut system.trans, Expr::TRUE), e]);
+                and_also(&mut system.trans, e);
             }
         }
         SystemItem::Observe(es) => {

@@ -175,6 +175,22 @@ pub(crate) fn and<L>(es: impl IntoIterator<Item = Expr<L>>) -> Expr<L> {
     }
 }
 
+/// Adds a member to a conjunction, which stays flat however many are added.
+pub(crate) fn and_also<L>(all: &mut Expr<L>, e: Expr<L>) {
+    match all {
+        Expr::And(members) if !e.is_true() && !e.is_false() => members.push(e),
+        _ => *all = and([std::mem::replace(all, Expr::TRUE), e]),
+    }
+}
+
+/// Adds a member to a disjunction, which stays flat however many are added.
+pub(crate) fn or_else<L>(all: &mut Expr<L>, e: Expr<L>) {
+    match all {
+        Expr::Or(members) if !e.is_true() && !e.is_false() => members.push(e),
+        _ => *all = or([std::mem::replace(all, Expr::FALSE), e]),
+    }
+}
+
 /// A disjunction without constant members.
 pub(crate) fn or<L>(es: impl IntoIterator<Item = Expr<L>>) -> Expr<L> {
     let mut rest: Vec<_> = es.into_iter().filter(|e| !e.is_false()).collect();

@@ -140,7 +140,7 @@ fn narrowed<const N: usize>(
     let any = leads(None)?;
     // Where there are many strategies, one of the most promising is among them.
     let Some(mut all) = among(Wish::Leading, &any) else { return Ok(Belief::Unfit) };
-    let answer = beam::search(&mut all, NARROW, budget / 8)?;
+    let answer = beam::search(&mut all, NARROW, budget / 2)?;
     if !matches!(answer, Belief::Open) {
         return Ok(answer);
     }

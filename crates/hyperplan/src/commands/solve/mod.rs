@@ -54,10 +54,6 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
             break;
         }
         let start = Instant::now();
-        if matches!(wish, Wish::Constant(_)) && !objective.minimize.is_empty() {
-            let name = &objective.name;
-            out.remark(format_args!("note: {name}: its own `minimize` is left aside for `--minimize`"));
-        }
         let solved = watched(&loaded, objective, &wish, args, (&config.plan, explain, verbose), out);
         let (outcome, searched, open) = match solved {
             Ok(found) => found,
@@ -81,13 +77,10 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
         let own = own.or(open.undecided.as_ref()).map(|reason| Why::new(reason, explain));
         let why = own.as_ref().or_else(|| searched?.undecided.as_ref());
         let mut answer = answer(loaded, objective, &outcome, (searched, open.costs), why, total);
-        match certificates(args, &config, (&answer, &outcome), &wish, (loaded, objective), out) {
-            Ok((made, status)) => (answer.certificates, worst) = (made, worst.max(status)),
-            Err(failure) => {
-                out.failure(&failure);
-                worst = worst.max(failure.status);
-                continue;
-            }
+        worst = worst.max(certify(args, &config, (&mut answer, &outcome), &wish, (loaded, objective), out));
+        if worst == Exit::Bug {
+            // What is wrong is not told as an answer.
+            continue;
         }
         let foreign = args.problem.foreign.as_ref();
         let found = Found { loaded, objective, outcome: &outcome, answer: &answer, searched, foreign };
@@ -127,6 +120,10 @@ fn watched(
     (config, explain, verbose): (&plan::Config, Explain<'_>, bool),
     out: &Output,
 ) -> Result<Solved, (Failure, ReasonCode)> {
+    if matches!(wish, Wish::Constant(_)) && !objective.minimize.is_empty() {
+        let name = &objective.name;
+        out.remark(format_args!("note: {name}: its own `minimize` is left aside for `--minimize`"));
+    }
     guard::doing("searching for a strategy");
     let own = plan::Config { watch: Watch::default(), ..config.clone() };
     guard::watching(&own.watch);
@@ -134,19 +131,29 @@ fn watched(
     solve(loaded, objective, wish, &Team { args, config: &own, out }, explain)
 }
 
-/// Certifies what is said to be impossible, if that is wanted.
-fn certificates(
+/// Certifies what is said to be impossible, if that is wanted. An answer without a certificate is an answer all the same,
+/// unless it is wrong.
+fn certify(
     args: &args::Solve,
     config: &config::Solve,
-    (answer, outcome): (&Answer, &plan::Outcome),
+    (answer, outcome): (&mut Answer, &plan::Outcome),
     wish: &Wish<'_>,
     about: (&Loaded, &Objective),
     out: &mut Output,
-) -> Result<(Vec<String>, Exit)> {
-    let Some(folder) = &args.proof else { return Ok((Vec::new(), Exit::Good)) };
+) -> Exit {
+    let Some(folder) = &args.proof else { return Exit::Good };
     guard::doing("making certificates");
     let prover = Prover { folder, set: &args.problem.set, deadline: &config.plan.deadline };
-    prover.prove(about, (outcome, answer.minimized.as_ref()), wish, out)
+    match prover.prove(about, (outcome, answer.minimized.as_ref()), wish, out) {
+        Ok((made, status)) => {
+            answer.certificates = made;
+            status
+        }
+        Err(failure) => {
+            out.failure(&failure);
+            failure.status
+        }
+    }
 }
 
 /// Refuses formats in which what is asked for cannot be told.
