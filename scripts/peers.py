@@ -90,6 +90,9 @@ def command(peer: dict, program: str, instance: Instance, timeout: float) -> lis
         group = part if isinstance(part, list) else [part]
         if len(group) > 1 and not all(values.get(word[1:-1], word) for word in group if word.startswith("{")):
             continue
+        if len(group) > 1 and "{models}" in group:
+            words += [model if word == "{models}" else word for model in instance.models for word in group]
+            continue
         for word in group:
             if word == "{models}":
                 words += instance.models

@@ -57,6 +57,10 @@ class Peers(unittest.TestCase):
         for name, known in peers.tomllib.loads((peers.HERE / "peers.toml").read_text()).items():
             words = peers.command(known, "p", instance(formula=str(formula), semantics="pes"), 2)
             self.assertTrue(words[0] == "p" and all("{" not in word for word in words), name)
+        peer = {"command": ["{program}", ["-i", "{models}"], "-F", "{formula}"]}
+        self.assertEqual(
+            peers.command(peer, "p", instance(), 9.0), ["p", "-i", "a.smv", "-i", "b.smv", "-F", "f.hq"]
+        )
 
     def test_verdicts(self) -> None:
         self.assertEqual(peers.verdict(PEER, ended(out="x\nresult: unsat.\n"))[0], "violated")
@@ -135,6 +139,9 @@ class Modules(unittest.TestCase):
         package.result = result
         fakes = {"benchexec": package, "benchexec.result": result, "benchexec.tools": types.ModuleType("t"), "benchexec.tools.template": template}
         with mock.patch.dict(sys.modules, fakes):
+            # Whoever looked for tests may have loaded them with the real one.
+            for name in [name for name in sys.modules if name.split(".")[0] == "peers_tool"]:
+                del sys.modules[name]
             from peers_tool import hyperqb2
 
             tool = hyperqb2.Tool()

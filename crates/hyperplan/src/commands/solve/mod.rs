@@ -77,8 +77,10 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
         let own = own.or(open.undecided.as_ref()).map(|reason| Why::new(reason, explain));
         let why = own.as_ref().or_else(|| searched?.undecided.as_ref());
         let mut answer = answer(loaded, objective, &outcome, (searched, open.costs), why, total);
-        worst = worst.max(certify(args, &config, (&mut answer, &outcome), &wish, (loaded, objective), out));
-        if worst == Exit::Bug {
+        let about = (loaded, objective);
+        let certified = certify(args, &config, (&mut answer, &outcome), &wish, about, out);
+        worst = worst.max(certified);
+        if certified >= Exit::Solver {
             // What is wrong is not told as an answer.
             continue;
         }
