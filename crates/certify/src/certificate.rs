@@ -170,7 +170,7 @@ impl Certificate {
 }
 
 /// Checks that instances refute the claim of an objective. This is all that has to be believed, with what it calls: that the
-/// clauses say what [`crate::encode`] says, and that [`Checker`] is right.
+/// clauses say what `encode` says, and that [`Checker`] is right.
 ///
 /// # Errors
 /// If they do not.
