@@ -21,11 +21,11 @@ def given(context: Context) -> None:
 
 def lines(context: Context, file: pathlib.Path) -> list[list[str]]:
     """The answers for one file; the memory is that of the whole command."""
-    done = context.once(file)
+    done = context.once(file, "--objective", "all")
     memory = megabytes(done.memory, context.floor)
     answers = [json.loads(line) for line in done.output.splitlines() if line.startswith("{")]
     if not answers:
-        return [[file.name, "-", done.problem or "no answer", "-", seconds(done.wall), memory]]
+        return [[file.name, "-", (done.problem or "no answer").replace(str(file), file.name), "-", seconds(done.wall), memory]]
     return [
         [
             file.name,
