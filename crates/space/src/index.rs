@@ -62,30 +62,22 @@ impl Met {
     /// [`TooLarge`] beyond the budget.
     pub(crate) fn meet(&mut self, codes: &[i64]) -> Result<Option<StateIx>, TooLarge> {
         let Some(number) = self.number(codes) else { return Ok(None) };
-        let next = self.count as StateIx;
-        let known = match &mut self.index {
-            Index::Table(table) => {
-                let entry = &mut table[number as usize];
-                let known = entry.checked_sub(1);
-                if known.is_none() && self.count < self.budget {
-                    *entry = next + 1;
-                }
-                known
-            }
-            Index::Map(map) => match map.get(&number) {
-                Some(&known) => Some(known),
-                None if self.count < self.budget => {
-                    map.insert(number, next);
-                    None
-                }
-                None => None,
-            },
+        let known = match &self.index {
+            Index::Table(table) => table[number as usize].checked_sub(1),
+            Index::Map(map) => map.get(&number).copied(),
         };
         if known.is_some() {
             return Ok(known);
         }
         if self.count >= self.budget {
             return Err(TooLarge);
+        }
+        let next = self.count as StateIx;
+        match &mut self.index {
+            Index::Table(table) => table[number as usize] = next + 1,
+            Index::Map(map) => {
+                map.insert(number, next);
+            }
         }
         self.count += 1;
         self.codes.extend_from_slice(codes);

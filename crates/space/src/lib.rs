@@ -9,7 +9,7 @@
 //! states are going to be written.
 //!
 //! `eval` gives expressions their values, `row` what labels are in one state; `also` says what transitions do besides, `step` where updates lead; `graph` and
-//! `command` read them, `explore` fills graphs, `run` and `inspect` read those.
+//! `command` read them, `explore` fills graphs, whose states `index` numbers, `run` and `inspect` read those.
 
 mod also;
 mod command;

@@ -74,6 +74,8 @@ pub(crate) struct Graph<'p> {
     nodes: TiVec<StateId, Node>,
     index: FxHashMap<Rc<[Value]>, StateId>,
     pub(crate) limit: usize,
+    /// Whether a variable may become anything between two ends.
+    wide: bool,
     /// The labels that `trans` reads of the state after a step, in those too that it reads.
     after: Vec<bool>,
 }
@@ -118,6 +120,8 @@ impl<'p> Graph<'p> {
             nodes: TiVec::new(),
             index: FxHashMap::default(),
             limit: limit.min(u32::MAX as usize - 1),
+            wide: system.clauses.iter().flat_map(|clause| &clause.updates).any(|own| is_wide(&own.1))
+                || system.also.iter().flat_map(|also| &also.updates).any(|own| is_wide(&own.1)),
             after: read_after(system),
         }
     }
@@ -536,10 +540,7 @@ impl<'p> Graph<'p> {
 
     /// Whether a transition leads back to the state; asked only where one may lead to too many states to list.
     fn can_stay(&self, state: StateId) -> Result<bool, Stop> {
-        let mut updates = self.system.clauses.iter().flat_map(|clause| &clause.updates);
-        if self.nodes[state].moves.is_some()
-            || !updates.any(|(_, update)| matches!(update, Update::Within(..)))
-        {
+        if !self.wide || self.nodes[state].moves.is_some() {
             return Ok(false);
         }
         for &action in &self.system.actions {
@@ -601,6 +602,15 @@ fn applied<'u, L>(mut update: &'u Update<L>, value: &ValueOf<'_, L>) -> Result<&
         update = last;
     }
     Ok(update)
+}
+
+/// Whether an update allows, somewhere, all that lies between two ends.
+fn is_wide<L>(update: &Update<L>) -> bool {
+    match update {
+        Update::Assign(_) | Update::OneOf(_) => false,
+        Update::Within(..) => true,
+        Update::If(branches, last) => branches.iter().any(|(_, branch)| is_wide(branch)) || is_wide(last),
+    }
 }
 
 /// Whether a variable may get this value of its type.
