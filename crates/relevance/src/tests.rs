@@ -186,3 +186,25 @@ proptest! {
         prop_assert!(runs(&all, P).iter().all(|(_, run)| within(run, &many)));
     }
 }
+
+/// What cannot be done with open eyes is known after a look at each pair of states, however many times there are.
+#[test]
+fn many_times_are_looked_at_once() {
+    let text = "
+        system Line {
+          state x: 0..9;
+          action left, right, stay;
+          init x == 0;
+          on left when x > 0 { x' = x - 1; }
+          on left when x == 0 {}
+          on right when x < 9 { x' = x + 1; }
+          on right when x == 9 {}
+          on stay {}
+        }
+        objective o within 500 { exists p. forall q. F (x[p] == 9 & x[q] == 9) }";
+    let problem = problem(text);
+    let arena = arena(&problem);
+    let goal = Goal::new(&arena.task.objective.formula, true);
+    let answer = believe(&arena, 1, &goal, 500).expect("it is small");
+    assert!(matches!(answer, Belief::Hopeless), "it is lost step by step");
+}

@@ -3,6 +3,7 @@
 use super::Belief;
 use super::distance::Distances;
 use super::joint::{Numbers, States, joint};
+use super::untimed::{Goals, Untimed};
 use crate::layers::Layers;
 use crate::reach::{Place, Product, Question};
 use crate::residual::{FALSE, Residual, TRUE};
@@ -89,6 +90,8 @@ pub(super) struct Chances<'a, const N: usize> {
     distances: [Distances<N>; 2],
     /// The latter by chance, once it was asked for.
     far: Vec<Option<Option<u32>>>,
+    /// For how long they last at least, once it was found out.
+    untimed: Option<Untimed<N>>,
     /// The last set in which each chance was, by number.
     stamps: Vec<u32>,
     stamp: u32,
@@ -125,6 +128,7 @@ impl<'a, const N: usize> Chances<'a, N> {
             after: FxHashMap::default(),
             left: Vec::new(),
             far: Vec::new(),
+            untimed: None,
             stamps: Vec::new(),
             stamp: 0,
             asked: 0,
@@ -309,13 +313,61 @@ impl<'a, const N: usize> Chances<'a, N> {
         for &chance in belief {
             self.work += 1;
             let After::Left(range) = self.after(step, chance) else { return Err(chance) };
-            for &left in &self.left[range] {
+            for at in range {
+                let left = self.left[at];
                 if stamped(&mut self.stamps, left, self.stamp) {
+                    if self.is_late(step, left) {
+                        return Err(chance);
+                    }
                     next.push(left);
                 }
             }
         }
         Ok(next)
+    }
+
+    /// Finds out for how long chances last at least, looking at so many steps; whether the leading paths lose by it from the start.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`].
+    pub(super) fn foresee(&mut self, budget: usize) -> Result<bool, Error> {
+        let Some(starts) = self.starts(self.work.saturating_add(budget))? else { return Ok(false) };
+        let mut all = Vec::new();
+        for (lead, belief) in &starts {
+            let lead = self.leads.get(*lead);
+            let chances = belief.iter().map(|&chance| (lead, Some(self.half(chance))));
+            all.extend(chances);
+            all.extend(belief.is_empty().then_some((lead, None)));
+        }
+        let goals = Goals { own: &mut self.own, rest: &mut self.rest };
+        self.untimed = Some(Untimed::new(goals, self.leading, &self.layers, &all, budget)?);
+        let loses = |chances: &mut Self, (lead, belief): &Start| match belief.as_slice() {
+            [] => chances.lasts(*lead, None, 0) > chances.end,
+            belief => belief.iter().any(|&chance| chances.lasts(*lead, Some(chance), 0) > chances.end),
+        };
+        Ok(starts.iter().all(|start| loses(self, start)))
+    }
+
+    fn half(&self, chance: ChanceIx) -> (States<N>, Residual) {
+        let (other, left) = self.chances.get(chance);
+        (self.others.get(other), left)
+    }
+
+    /// For how many steps from a time on a chance lasts at least, or what is asked of the leading paths alone does.
+    fn lasts(&mut self, lead: LeadIx, chance: Option<ChanceIx>, time: u32) -> u32 {
+        let chance = chance.map(|chance| (chance, self.half(chance)));
+        let Some(untimed) = &mut self.untimed else { return 0 };
+        let goals = Goals { own: &mut self.own, rest: &mut self.rest };
+        untimed.steps(goals, (lead, self.leads.get(lead)), chance, time)
+    }
+
+    /// Whether a chance will not be gone in time, whatever the leading paths do after a step.
+    fn is_late(&mut self, step: LeadStep<N>, chance: ChanceIx) -> bool {
+        if self.untimed.is_none() {
+            return false;
+        }
+        let (time, _) = self.moves.get(step.seen);
+        time.saturating_add(self.lasts(step.to, Some(chance), time)) > self.end
     }
 
     /// Whether a chance is in a belief, said fast for many.

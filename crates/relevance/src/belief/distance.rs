@@ -61,7 +61,7 @@ impl<const N: usize> Distances<N> {
     ) -> Option<u32> {
         let others = self.others;
         let relaxed = *self.relaxed.entry(left).or_insert_with(|| {
-            let relaxed = product.residuals.relax(left, 0);
+            let relaxed = product.residuals.relax(left, None);
             product.residuals.without(relaxed, others)
         });
         if !self.admits(relaxed) {
@@ -117,7 +117,8 @@ impl<const N: usize> Distances<N> {
             (to, self.paths.contains(&at).then(|| product.graphs[at].letters[letter as usize].0))
         };
         let places = std::array::from_fn(place);
-        product.relaxed(before, &places)
+        let bits = product.own_bits(&places);
+        product.relaxed(before, bits)
     }
 
     /// Distances of the nodes from `first` on, whose steps are these, each from its end to its beginning.

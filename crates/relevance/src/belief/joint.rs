@@ -25,6 +25,11 @@ impl<T: Copy + Eq + Hash> Numbers<T> {
         })
     }
 
+    /// The number of what was met before.
+    pub(super) fn find(&self, thing: &T) -> Option<u32> {
+        self.index.get(thing).copied()
+    }
+
     pub(super) fn get(&self, number: u32) -> T {
         self.all[number as usize]
     }

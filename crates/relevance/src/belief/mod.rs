@@ -6,11 +6,13 @@
 //! paths do not know, as their choice may not depend on the others. It has to be empty in the end, as a chance is gone once
 //! nothing more can be asked for. A chance that becomes `false` loses.
 //!
-//! Two searches are made of beliefs. The first keeps only the most promising at each time ([`beam`]), at first very few, which
-//! finds a strategy soon where there are many. Before it keeps more the other player is given a turn: if it wins by answering
-//! step by step, the leading paths lose ([`response`]). The second is depth first, with what was learnt from failing: for a node, the
-//! chances by which each of its moves failed, traced back, are a *nogood*. A belief that includes a nogood of the same leading states at the same time need not be
-//! searched. This is conflict-directed backjumping with learning (Dechter), the constraint being that no chance be missed.
+//! Two searches are made of beliefs. The first keeps only the most promising at each time ([`beam`]), at first very few,
+//! which finds a strategy soon where there are many. Before it keeps more the other player is given a turn: if it wins by
+//! answering step by step, the leading paths lose ([`response`]). They lose as well if they would without deadlines, seeing
+//! what the other player does ([`untimed`]); for how long a chance lasts at least is known from then on. The second is depth
+//! first, with what was learnt from failing: for a node, the chances by which each of its moves failed, traced back, are a
+//! *nogood*. A belief that includes a nogood of the same leading states at the same time need not be searched. This is
+//! conflict-directed backjumping with learning (Dechter), the constraint being that no chance be missed.
 //!
 //! Soundness. Chances are dropped where the goal's rest is `true`, where the other player's path is none (it cannot go on as
 //! long as the mode demands), and where its own [`Layers`] say that it can do no harm. What the goal asks of the leading paths
@@ -23,6 +25,7 @@ mod distance;
 mod joint;
 mod response;
 mod search;
+mod untimed;
 
 use crate::goal::Goal;
 use crate::layers::Layers;
@@ -87,6 +90,9 @@ const SLACK: u32 = 4;
 const NARROW: usize = 4;
 const WIDTHS: [usize; 4] = [16, 128, 1024, 8192];
 
+/// Steps of the game without time for each chance that a beam may look at; these take up to three times as long.
+const STEPS_PER_CHANCE: usize = 12;
+
 fn narrowed<const N: usize>(
     arena: &Arena<'_>,
     paths: [PathId; N],
@@ -149,10 +155,14 @@ fn narrowed<const N: usize>(
         return Ok(Belief::Hopeless);
     }
     drop(answers);
-    for width in WIDTHS {
+    for (turn, width) in WIDTHS.into_iter().enumerate() {
         let answer = beam::search(&mut all, width, budget)?;
         if !matches!(answer, Belief::Open) {
             return Ok(answer);
+        }
+        // What was not found soon may be impossible even for who sees everything.
+        if turn == 0 && all.foresee(budget.saturating_mul(STEPS_PER_CHANCE))? {
+            return Ok(Belief::Hopeless);
         }
     }
     let soon = leads(Some(SLACK))?;

@@ -85,7 +85,7 @@ impl Bound {
         if let Some(&row) = self.met.get(&(residual, time)) {
             return row;
         }
-        let relaxed = residuals.relax(residual, time + 1);
+        let relaxed = residuals.relax(residual, Some(time + 1));
         let row = self.rows.get(&relaxed).copied();
         self.met.insert((residual, time), row);
         row
@@ -113,7 +113,7 @@ struct Search<'s> {
 impl Search<'_> {
     /// All states with what is left there, relaxed; the initial ones.
     fn explore(&mut self, product: &mut Product<'_, 1>) -> Result<Vec<Node>, TooMany> {
-        let relaxed = product.residuals.relax(product.initial, 0);
+        let relaxed = product.residuals.relax(product.initial, Some(0));
         let mut index: Vec<Vec<u32>> = Vec::new();
         let initial = &self.graph.initial;
         for &state in initial {
@@ -147,7 +147,8 @@ impl Search<'_> {
         if product.question.arena.task.objective.mode == Mode::Bounded && !live {
             return Ok(None);
         }
-        let after = product.relaxed(before, &[place]);
+        let bits = product.own_bits(&[place]);
+        let after = product.relaxed(before, bits);
         if after == FALSE {
             return Ok(None);
         }

@@ -34,6 +34,7 @@ mod question;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use atoms::Bits;
 pub(crate) use explore::Exploration;
 pub(crate) use product::Product;
 pub(crate) use question::{Explored, Place, Question};

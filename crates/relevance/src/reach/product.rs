@@ -40,9 +40,13 @@ impl<'a, const N: usize> Product<'a, N> {
         self.residuals.progress(before, Now { bits: bits.holds, unknown: bits.unknown, last })
     }
 
-    /// What is left where the paths enter these places at any time, as far as these tell, relaxed.
-    pub(crate) fn relaxed(&mut self, before: Residual, places: &[Place; N]) -> Residual {
-        let bits = self.atoms.own_bits(self.question, &self.graphs, places);
+    /// The values of the atoms where the paths enter these places at any time, as far as these tell.
+    pub(crate) fn own_bits(&mut self, places: &[Place; N]) -> Bits {
+        self.atoms.own_bits(self.question, &self.graphs, places)
+    }
+
+    /// What is left once these are the values at any time, relaxed.
+    pub(crate) fn relaxed(&mut self, before: Residual, bits: Bits) -> Residual {
         self.residuals.progress(before, Now { bits: bits.holds, unknown: bits.unknown, last: false })
     }
 

@@ -38,9 +38,9 @@ type Relaxed = FxHashMap<(Residual, bool), Residual>;
 impl Residuals {
     /// A weaker residual without numbers: deadlines are lifted, and what must always hold is forgotten, but for what
     /// is asked for at a time when it will be false, since the settling atoms are known. `time` is that of the next
-    /// position.
-    pub(crate) fn relax(&mut self, residual: Residual, time: u32) -> Residual {
-        self.relaxed(residual, Some(time), &mut Relaxed::default())
+    /// position, if it is known.
+    pub(crate) fn relax(&mut self, residual: Residual, time: Option<u32>) -> Residual {
+        self.relaxed(residual, time, &mut Relaxed::default())
     }
 
     /// The same; within operators the time is open. Recursion is bounded by the nesting of the formula.
