@@ -91,7 +91,7 @@ fn is(a: Expr, b: Expr, span: Span) -> Expr {
 fn chosen(mut branches: Vec<(Expr, Expr)>, span: Span) -> Expr {
     match branches.pop() {
         Some((_, last)) if branches.is_empty() => last,
-        Some((_, last)) => Expr::new(Kind::Case(branches, Box::new(last)), span),
+        Some((_, last)) => Expr::new(Kind::Case(branches, Some(Box::new(last))), span),
         None => truth(false, span),
     }
 }

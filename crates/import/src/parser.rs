@@ -210,7 +210,7 @@ impl<'a> Parser<'a> {
             branches.push((condition, then));
             let next = self.operators(level::CONDITION + 1)?;
             if !self.eat("?") {
-                let kind = Kind::Case(branches, Box::new(next));
+                let kind = Kind::Case(branches, Some(Box::new(next)));
                 return self.node(kind, start);
             }
             condition = next;
@@ -500,10 +500,11 @@ impl<'a> Parser<'a> {
             self.open_cases.push(start);
         }
         let span = self.since(start);
-        match branches.pop() {
-            Some((_, last)) if branches.is_empty() => Ok(last),
-            Some((_, last)) => self.node(Kind::Case(branches, Box::new(last)), start),
-            None => self.refuse(span, "a `case` without cases", ""),
+        let last = if decided { branches.pop().map(|(_, last)| last) } else { None };
+        match (branches.is_empty(), last) {
+            (true, Some(only)) => Ok(only),
+            (true, None) => self.refuse(span, "a `case` without cases", ""),
+            (false, last) => self.node(Kind::Case(branches, last.map(Box::new)), start),
         }
     }
 }

@@ -87,7 +87,7 @@ pub(crate) fn parse(source: SourceId, text: &str) -> Parse<Vec<Module>> {
             Step::Branch(None, yes, no) => one_of(vec![go(yes, *span), go(no, *span)], *span),
             Step::Branch(Some(condition), yes, no) => {
                 let branch = vec![(condition.clone(), go(yes, *span))];
-                Expr::new(Kind::Case(branch, Box::new(go(no, *span))), *span)
+                Expr::new(Kind::Case(branch, Some(Box::new(go(no, *span)))), *span)
             }
         };
         branches.push((at(number, *span), next));
@@ -113,7 +113,7 @@ pub(crate) fn parse(source: SourceId, text: &str) -> Parse<Vec<Module>> {
 }
 
 fn case(branches: Vec<(Expr, Expr)>, last: Expr, span: Span) -> Expr {
-    if branches.is_empty() { last } else { Expr::new(Kind::Case(branches, Box::new(last)), span) }
+    if branches.is_empty() { last } else { Expr::new(Kind::Case(branches, Some(Box::new(last))), span) }
 }
 
 fn number(parser: &mut Parser<'_>) -> Parse<usize> {

@@ -45,7 +45,7 @@ impl Kind {
                     each(condition);
                     each(value);
                 }
-                each(last);
+                last.iter().for_each(|last| each(last));
             }
         }
     }
@@ -73,8 +73,8 @@ pub(crate) enum Kind {
     /// Each operand with whether it is subtracted; at least two.
     Sum(Vec<(bool, Expr)>),
     Infix(Infix, Box<Expr>, Box<Expr>),
-    /// Conditions with their values; the value of the last is taken where none holds.
-    Case(Vec<(Expr, Expr)>, Box<Expr>),
+    /// Conditions with their values, at least one, and the value where none holds; without, it is that of the last condition.
+    Case(Vec<(Expr, Expr)>, Option<Box<Expr>>),
     Set(Vec<Expr>),
     Range(Box<Expr>, Box<Expr>),
     Call(Ident, Vec<Expr>),

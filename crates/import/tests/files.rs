@@ -85,6 +85,25 @@ fn what_has_no_end_needs_a_bound() {
     assert!(import(&files, &without, &mut sources).diagnostics.is_empty());
 }
 
+/// Where the last condition of a `case` makes no difference, it is read all the same: its names are there, its types fit.
+#[test]
+fn conditions_without_effect_are_checked() {
+    let model = |body: &str| format!("MODULE main VAR x : 0..3; y : boolean; ASSIGN next(x) := {body};");
+    for (condition, code) in [("z", "unknown-name"), ("x", "type-mismatch"), ("z = 1", "unknown-name")] {
+        for values in [["x", "0"], ["{0, 1}", "x"], ["{0, 1}", "{2, 3}"]] {
+            let [first, last] = values;
+            for text in [
+                format!("case y : {first}; {condition} : {last}; esac"),
+                format!("case {condition} : {last}; esac"),
+                format!("case y : {first}; TRUE : case !y : 0; {condition} : {last}; esac; esac"),
+            ] {
+                let (said, place) = only_error(&model(&text), "exists A. x[A] = 0", &Options::default());
+                assert_eq!((said, &place[..1]), (code, &condition[..1]), "{text}");
+            }
+        }
+    }
+}
+
 #[test]
 fn deep_and_long_input_is_refused_or_read() {
     let model = |body: &str| format!("MODULE main VAR x : 0..9; y : boolean; DEFINE d := {body};");

@@ -272,7 +272,7 @@ impl<'t> Lower<'t> {
             Kind::Neg(a) => self.negated(place, a, span),
             Kind::Sum(items) => self.sum(place, items, span),
             Kind::Infix(infix, a, b) => self.infix(place, *infix, a, b, span),
-            Kind::Case(branches, last) => self.case(place, branches, last, span),
+            Kind::Case(branches, last) => self.case(place, branches, last.as_deref(), span),
             Kind::Call(name, arguments) => self.call(place, name, arguments, span),
             Kind::Set(members) if members.len() == 1 => self.value(place, &members[0]),
             Kind::Set(_) | Kind::Range(..) | Kind::Union(_) => wrong_with(
@@ -402,14 +402,24 @@ impl<'t> Lower<'t> {
         }
     }
 
-    fn case(&mut self, place: Place<'_>, branches: &[(Expr, Expr)], last: &Expr, span: Span) -> Parse<Val> {
+    fn case(
+        &mut self,
+        place: Place<'_>,
+        branches: &[(Expr, Expr)],
+        last: Option<&Expr>,
+        span: Span,
+    ) -> Parse<Val> {
         let mut conditions = Vec::with_capacity(branches.len());
         let mut values = Vec::with_capacity(branches.len());
         for (condition, value) in branches {
             conditions.push(self.truth(place, condition)?);
             values.push(self.value(place, value)?);
         }
-        values.push(self.value(place, last)?);
+        match last {
+            Some(last) => values.push(self.value(place, last)?),
+            // It has been read, and makes no difference.
+            None => drop(conditions.pop()),
+        }
         self.joined(conditions, values, span)
     }
 

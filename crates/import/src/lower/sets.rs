@@ -55,17 +55,20 @@ impl<'t> Lower<'t> {
                 }
                 Ok(Choice::Range(Box::new([lo, hi])))
             }
-            Kind::Case(branches, last) if self.has_set(place, branches, last) => {
+            Kind::Case(branches, last) if self.is_set(place, expr, 0) => {
                 let mut kept = Vec::with_capacity(branches.len());
                 for (condition, value) in branches {
                     kept.push((self.truth(place, condition)?, self.choice(place, value)?));
                 }
-                let mut last = self.choice(place, last)?;
+                let last = last.as_ref().map(|last| self.choice(place, last)).transpose()?;
+                let Some(mut last) = last.or_else(|| kept.pop().map(|(_, value)| value)) else {
+                    return wrong("misplaced-set", expr.span, "a `case` without cases".to_owned());
+                };
                 if let Choice::If(more, end) = last {
                     kept.extend(more);
                     last = *end;
                 }
-                Ok(Choice::If(kept, Box::new(last)))
+                Ok(if kept.is_empty() { last } else { Choice::If(kept, Box::new(last)) })
             }
             Kind::Name(name) => match self.models[place.model].model.meaning(place.scope, name) {
                 Some(Meaning::Argument(scope, argument)) => self.choice(Place { scope, ..place }, argument),
@@ -86,17 +89,13 @@ impl<'t> Lower<'t> {
         }
     }
 
-    fn has_set(&self, place: Place<'_>, branches: &[(Expr, Expr)], last: &Expr) -> bool {
-        branches.iter().map(|(_, value)| value).chain([last]).any(|value| self.is_set(place, value, 0))
-    }
-
     /// Whether an expression is a set of several values, or one of several by condition.
     pub(crate) fn is_set(&self, place: Place<'_>, expr: &Expr, depth: u32) -> bool {
         match &expr.kind {
             Kind::Set(members) => members.len() > 1 || members.iter().any(|m| self.is_set(place, m, depth)),
             Kind::Range(..) | Kind::Union(_) => true,
             Kind::Case(branches, last) => {
-                branches.iter().map(|(_, v)| v).chain([&**last]).any(|v| self.is_set(place, v, depth))
+                branches.iter().map(|(_, v)| v).chain(last.as_deref()).any(|v| self.is_set(place, v, depth))
             }
             Kind::Next(inside) => self.is_set(place, inside, depth),
             Kind::Name(name) if depth < 100 => {
