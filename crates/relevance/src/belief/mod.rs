@@ -144,26 +144,10 @@ fn narrowed<const N: usize>(
         Chances::new(&own, (wish, rest), leading, leads.chain(&others).cloned().collect())
     };
     let any = leads(None)?;
-    // Where there are many strategies, one of the most promising is among them.
     let Some(mut all) = among(Wish::Leading, &any) else { return Ok(Belief::Unfit) };
-    let answer = beam::search(&mut all, NARROW, budget / 2)?;
+    let answer = by_beams(&mut all, || among(Wish::Other, &any), budget)?;
     if !matches!(answer, Belief::Open) {
         return Ok(answer);
-    }
-    let Some(mut answers) = among(Wish::Other, &any) else { return Ok(Belief::Unfit) };
-    if response::is_won(&mut answers, budget / 4)? {
-        return Ok(Belief::Hopeless);
-    }
-    drop(answers);
-    for (turn, width) in WIDTHS.into_iter().enumerate() {
-        let answer = beam::search(&mut all, width, budget)?;
-        if !matches!(answer, Belief::Open) {
-            return Ok(answer);
-        }
-        // What was not found soon may be impossible even for who sees everything.
-        if turn == 0 && all.foresee(budget.saturating_mul(STEPS_PER_CHANCE))? {
-            return Ok(Belief::Hopeless);
-        }
     }
     let soon = leads(Some(SLACK))?;
     let Some(mut few) = among(Wish::Leading, &soon) else { return Ok(Belief::Unfit) };
@@ -174,4 +158,33 @@ fn narrowed<const N: usize>(
     }
     let budget = all.work.saturating_add(budget);
     Search::new(&mut all, budget).run()
+}
+
+/// Looks for a strategy where it is most likely, and between that for reasons that there is none.
+fn by_beams<'a, const N: usize>(
+    all: &mut Chances<'a, N>,
+    others: impl FnOnce() -> Option<Chances<'a, N>>,
+    budget: usize,
+) -> Result<Belief<Vec<Run>>, Error> {
+    // Where there are many strategies, one of the most promising is among them.
+    let answer = beam::search(all, NARROW, budget / 2)?;
+    if !matches!(answer, Belief::Open) {
+        return Ok(answer);
+    }
+    let Some(mut answers) = others() else { return Ok(Belief::Unfit) };
+    if response::is_won(&mut answers, budget / 4)? {
+        return Ok(Belief::Hopeless);
+    }
+    drop(answers);
+    for (turn, width) in WIDTHS.into_iter().enumerate() {
+        let answer = beam::search(all, width, budget)?;
+        if !matches!(answer, Belief::Open) {
+            return Ok(answer);
+        }
+        // What was not found soon may be impossible even for who sees everything.
+        if turn == 0 && all.foresee(budget.saturating_mul(STEPS_PER_CHANCE))? {
+            return Ok(Belief::Hopeless);
+        }
+    }
+    Ok(Belief::Open)
 }
