@@ -153,7 +153,9 @@ impl<'a> Report<'a> {
         let about = format!("{}{with}: {claim}", one_line(self.objective));
         match (&self.reason, self.instances, self.clauses, self.steps) {
             (None, Some(instances), Some(clauses), Some(steps)) => {
-                format!("{about}, certified: {instances} instances, {clauses} clauses, {steps} steps")
+                let count = |n: u64, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+                let (instances, clauses) = (count(instances as u64, "instance"), count(clauses, "clause"));
+                format!("{about}, certified: {instances}, {clauses}, {}", count(steps, "step"))
             }
             (reason, ..) => {
                 format!("{about} is not certified: {}", one_line(reason.as_deref().unwrap_or("no reason")))
