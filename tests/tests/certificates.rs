@@ -72,6 +72,35 @@ fn random(seed: u64) -> (model::Problem, bool, String) {
     (random, verdict, text)
 }
 
+/// A random claim that is true, and its certificate.
+struct Case {
+    seed: u64,
+    model: model::Problem,
+    text: String,
+    typed: Problem,
+    made: Made,
+}
+
+impl Case {
+    fn objective(&self) -> &Objective {
+        &self.typed.objectives[0]
+    }
+}
+
+/// Random claims that are true, each with its certificate.
+fn true_claims(cases: u64) -> impl Iterator<Item = Case> {
+    seeds(cases).filter_map(|seed| {
+        let (model, verdict, text) = random(seed);
+        if verdict == model.exists[0] {
+            return None;
+        }
+        let typed = lowered(&text);
+        let made = Made::new(&typed, &typed.objectives[0]);
+        let made = made.unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
+        Some(Case { seed, model, text, typed, made })
+    })
+}
+
 #[test]
 fn what_brute_force_refutes_is_certified_and_nothing_else() {
     let (mut certificates, mut instances, mut wrong) = (0, 0, 0);
@@ -160,16 +189,10 @@ fn without(branches: &[Branch], gone: usize) -> Vec<Branch> {
 #[test]
 fn what_is_damaged_proves_nothing_wrong() {
     let (mut refused, mut true_still) = (0, 0);
-    for seed in seeds(200) {
-        let (random, verdict, text) = random(seed);
-        if verdict == random.exists[0] {
-            continue;
-        }
-        let typed = lowered(&text);
-        let objective = &typed.objectives[0];
-        let made =
-            Made::new(&typed, objective).unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
-        let (clauses, mut dice) = (made.clauses(&typed, objective), Random::new(seed));
+    for case in true_claims(200) {
+        let (objective, Case { seed, model: random, text, typed, made }) = (case.objective(), &case);
+        let seed = *seed;
+        let (clauses, mut dice) = (made.clauses(typed, objective), Random::new(seed));
         // A clause less: refused unless the others have no model either.
         let starts: Vec<usize> = (0..clauses.len()).filter(|&at| at == 0 || clauses[at - 1] == 0).collect();
         for _ in 0..5 {
@@ -201,8 +224,8 @@ fn what_is_damaged_proves_nothing_wrong() {
         // Instances less or more: whatever is accepted, the claim is true, and the refutation belongs to its clauses.
         for at in 0..made.branches.len() {
             let other = Made { branches: without(&made.branches, at), refutation: made.refutation.clone() };
-            if has_model(&other.clauses(&typed, objective)) {
-                assert!(other.check(&typed, objective).is_err(), "seed {seed}: without an instance\n{text}");
+            if has_model(&other.clauses(typed, objective)) {
+                assert!(other.check(typed, objective).is_err(), "seed {seed}: without an instance\n{text}");
                 refused += 1;
             }
         }
@@ -306,35 +329,30 @@ fn by_veripb(veripb: &Path, made: &Made, problem: &Problem, objective: &Objectiv
     String::from_utf8_lossy(&output.stdout).contains("s VERIFIED UNSATISFIABLE")
 }
 
+/// Both checkers accept certificates of random problems, of several alternations too.
 #[test]
 fn another_checker_accepts_them_too() {
     let Some(veripb) = veripb() else { return };
-    for seed in seeds(100) {
-        let (random, verdict, text) = random(seed);
-        if verdict != random.exists[0] {
-            let typed = lowered(&text);
-            let objective = &typed.objectives[0];
-            let made =
-                Made::new(&typed, objective).unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
-            assert!(by_veripb(&veripb, &made, &typed, objective), "seed {seed}\n{text}");
-        }
+    let (mut accepted, mut alternating, mut instances) = (0, 0, 0);
+    for case in true_claims(100) {
+        let (seed, text, typed, objective) = (case.seed, &case.text, &case.typed, case.objective());
+        let checked = case.made.check(typed, objective);
+        let checked = checked.unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
+        assert!(by_veripb(&veripb, &case.made, typed, objective), "seed {seed}\n{text}");
+        accepted += 1;
+        alternating += u64::from(objective.blocks().len() > 2);
+        instances += checked.instances;
     }
+    say(&format!("{accepted} accepted, {alternating} of three and more blocks, {instances} instances"));
 }
 
 #[test]
 fn a_certificate_is_for_one_problem() {
     let (mut others, mut found) = (0, 0);
-    for seed in seeds(60) {
-        let (random, verdict, text) = random(seed);
-        if verdict == random.exists[0] {
-            continue;
-        }
-        let typed = lowered(&text);
-        let objective = &typed.objectives[0];
-        let made =
-            Made::new(&typed, objective).unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
+    for case in true_claims(60) {
+        let (objective, Case { seed, text, typed, made, .. }) = (case.objective(), &case);
         let own =
-            Certificate::new(&typed, objective, Vec::new(), &made.branches, &never).expect("it was encoded");
+            Certificate::new(typed, objective, Vec::new(), &made.branches, &never).expect("it was encoded");
         // As a file and back.
         let (folder, mut written) = (folder(), Vec::new());
         own.write(&mut written).expect("to memory");
@@ -344,8 +362,8 @@ fn a_certificate_is_for_one_problem() {
         let check = |problem: &Problem| {
             own.check(problem, &problem.objectives[0], &mut Cursor::new(&made.refutation), &never)
         };
-        check(&typed).unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
-        let same = own.branches(&typed, objective).expect("it was read");
+        check(typed).unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
+        let same = own.branches(typed, objective).expect("it was read");
         assert_eq!(same, made.branches, "seed {seed}\n{text}");
         found += 1;
         let other = lowered(&self::random(seed.wrapping_add(1)).2);
