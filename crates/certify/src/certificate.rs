@@ -1,5 +1,6 @@
 //! Certificates as files, and what it takes for one to count.
 
+use crate::cost::Bound;
 use crate::encode::Encoder;
 use crate::error::Error;
 use crate::instance::{self, Branch, BranchFile};
@@ -55,6 +56,9 @@ pub struct Certificate {
     pub objective: String,
     /// What is claimed of it.
     pub claim: Claim,
+    /// Of which strategies only: those with such costs, by [`crate::with_bounds`].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub costs: Vec<Bound>,
     /// The digest of what the problem means.
     pub problem: String,
     /// How many variables the clauses have.
@@ -78,7 +82,7 @@ pub struct Checked {
 }
 
 impl Certificate {
-    /// The certificate of a claim that these instances refute.
+    /// The certificate of a claim that these instances refute. Where it is about costs, these are left to be said.
     ///
     /// # Errors
     /// Where they are none of the objective.
@@ -97,6 +101,7 @@ impl Certificate {
             set,
             objective: objective.name.clone(),
             claim: Claim::of(objective),
+            costs: Vec::new(),
             problem: digest(problem, objective),
             variables: encoder.variables(),
             clauses: clauses(&encoder.take()).count() as u64,

@@ -159,7 +159,41 @@ fn what_is_not_certified_is_said() {
             run.stderr
         );
     }
-    let run = solve("pass/costs.hp", &["--objective", "way"], &folder.path().join("costs"));
-    assert_eq!(run.status, 2, "{}", run.stderr);
-    assert!(run.stderr.contains("not certified: that a cost is the least"), "{}", run.stderr);
+}
+
+#[test]
+fn that_nothing_is_cheaper() {
+    let folder = folder();
+    let (file, objective) = ("pass/costs.hp", ["--objective", "straight"]);
+    let run = solve(file, &objective, folder.path());
+    assert_eq!((run.status, run.stderr.as_str()), (0, ""), "{}", run.stdout);
+    let run = certify(file, folder.path(), &objective);
+    assert_eq!((run.status, run.stderr.as_str()), (0, ""), "{}", run.stdout);
+    let said: Vec<&str> =
+        run.stdout.lines().map(|line| line.split(" unrealizable").next().unwrap_or("")).collect();
+    assert_eq!(
+        said,
+        [
+            "straight with cost turns[p] <= 1:",
+            "straight with cost turns[p] <= 2, 2 * cost fuel[p] + 1 <= 28:"
+        ],
+        "{}",
+        run.stdout
+    );
+    // Of the cheapest it is wrong, and of what is no cost.
+    let description = folder.path().join("straight-cost-2.json");
+    let own = std::fs::read_to_string(&description).expect("it was written");
+    for (old, new) in [("\"most\": 28", "\"most\": 29"), ("cost turns[p]", "cost nothing[p]")] {
+        assert!(own.contains(old), "{own}");
+        std::fs::write(&description, own.replace(old, new)).expect("ours");
+        let run = certify(file, folder.path(), &objective);
+        assert_eq!(run.status, 2, "{}", run.stdout);
+        assert!(run.stdout.contains(" is not certified: "), "{}", run.stdout);
+    }
+    // Of costs that the command line says.
+    let proofs = folder.path().join("both");
+    let run = solve(file, &["--objective", "way", "--minimize", "cost turns[p] + cost fuel[p]"], &proofs);
+    assert_eq!((run.status, run.stderr.as_str()), (0, ""), "{}", run.stdout);
+    let run = certify(file, &proofs, &["--objective", "way"]);
+    assert!(run.status == 0 && run.stdout.starts_with("way with cost "), "{} {}", run.stdout, run.stderr);
 }
