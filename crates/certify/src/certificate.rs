@@ -59,6 +59,9 @@ pub struct Certificate {
     /// Of which strategies only: those with such costs, by [`crate::with_bounds`].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub costs: Vec<Bound>,
+    /// The benchmark whose status it certifies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub benchmark: Option<Benchmark>,
     /// The digest of what the problem means.
     pub problem: String,
     /// How many variables the clauses have.
@@ -66,6 +69,16 @@ pub struct Certificate {
     /// How many clauses there are.
     pub clauses: u64,
     instances: Vec<BranchFile>,
+}
+
+/// A benchmark that was written of a problem.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Benchmark {
+    /// The digest of its file, which has the certificate's name.
+    pub sha256: String,
+    /// The problem's file, from the folder of the certificate on.
+    pub file: String,
 }
 
 /// What was checked.
@@ -102,6 +115,7 @@ impl Certificate {
             objective: objective.name.clone(),
             claim: Claim::of(objective),
             costs: Vec::new(),
+            benchmark: None,
             problem: digest(problem, objective),
             variables: encoder.variables(),
             clauses: clauses(&encoder.take()).count() as u64,

@@ -5,8 +5,9 @@ use crate::files;
 use crate::load::Loaded;
 use crate::output::Output;
 use crate::wish::Wish;
-use hyperplan_certify::{Bound, Certificate, Claim, Error, compress, with_bounds};
-use hyperplan_plan::{Unproved, Verdict, prove};
+use hyperplan_certify::{Benchmark, Bound, Certificate, Claim, Error, compress, with_bounds};
+use hyperplan_compare::plan::sha256;
+use hyperplan_plan::{Proved, Unproved, Verdict, prove};
 use hyperplan_problem::answer::{Below, CostValue, Minimized};
 use hyperplan_problem::{Objective, Problem, Target};
 use hyperplan_solver::Deadline;
@@ -160,22 +161,49 @@ impl Prover<'_> {
     /// Makes and writes one certificate, and says what it is called; or which status a failure has, and why.
     fn write(&self, subject: &Subject<'_>) -> Result<String, (Exit, String)> {
         let &Subject { problem, objective, value, .. } = subject;
+        let set = value.map(|(constant, value)| format!("{constant}={value}"));
+        let set = self.set.iter().map(|(name, value)| format!("{name}={value}")).chain(set).collect();
+        let mut made = Made::new((problem, objective), set, self.deadline)?;
+        made.certificate.costs.clone_from(&subject.costs);
+        made.write(&self.folder.join(subject.name())).map_err(|failure| (failure.status, failure.message))
+    }
+}
+
+/// A certificate and its refutation.
+pub(crate) struct Made {
+    certificate: Certificate,
+    proved: Proved,
+}
+
+impl Made {
+    /// Makes the certificate of an objective; or says which status a failure has, and why.
+    pub(crate) fn new(
+        (problem, objective): (&Problem, &Objective),
+        set: Vec<String>,
+        deadline: &Deadline,
+    ) -> Result<Made, (Exit, String)> {
         let failed = |error: &Error| (status(error), error.to_string());
-        let proved = prove(problem, objective, self.deadline).map_err(|unproved| match unproved {
+        let proved = prove(problem, objective, deadline).map_err(|unproved| match unproved {
             Unproved::Undecided(reason) => (Exit::Undecided, reason.to_string()),
             Unproved::Certify(error) => failed(&error),
             Unproved::Failed(error) => (crate::explain::status(&error), error.to_string()),
         })?;
-        let mut set: Vec<String> = self.set.iter().map(|(name, value)| format!("{name}={value}")).collect();
-        set.extend(value.map(|(constant, value)| format!("{constant}={value}")));
-        let stop = || self.deadline.passed();
-        let mut certificate = Certificate::new(problem, objective, set, &proved.branches, &stop)
+        let stop = || deadline.passed();
+        let certificate = Certificate::new(problem, objective, set, &proved.branches, &stop)
             .map_err(|error| failed(&error))?;
-        certificate.costs.clone_from(&subject.costs);
-        let file = |ending: &str| self.folder.join(subject.name()).with_added_extension(ending);
-        let said = |failure: Failure| (failure.status, failure.message);
-        files::write(&file(REFUTATION), |to| compress(to, |to| proved.refutation(to))).map_err(said)?;
-        files::write(&file(DESCRIPTION), |to| certificate.write(to)).map_err(said)?;
+        Ok(Made { certificate, proved })
+    }
+
+    /// Says which benchmark has the status that it certifies.
+    pub(crate) fn of_benchmark(&mut self, text: &[u8], problem: String) {
+        self.certificate.benchmark = Some(Benchmark { sha256: sha256(text), file: problem });
+    }
+
+    /// Writes the files; what the description is called.
+    pub(crate) fn write(&self, base: &Path) -> Result<String> {
+        let file = |ending: &str| base.with_added_extension(ending);
+        files::write(&file(REFUTATION), |to| compress(to, |to| self.proved.refutation(to)))?;
+        files::write(&file(DESCRIPTION), |to| self.certificate.write(to))?;
         Ok(file(DESCRIPTION).display().to_string())
     }
 }

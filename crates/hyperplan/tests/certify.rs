@@ -197,3 +197,42 @@ fn that_nothing_is_cheaper() {
     let run = certify(file, &proofs, &["--objective", "way"]);
     assert!(run.status == 0 && run.stdout.starts_with("way with cost "), "{} {}", run.stdout, run.stderr);
 }
+
+#[test]
+fn benchmarks_with_certificates() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    let emit = |options: &[&str], to: &Path| {
+        hyperplan(&[&["emit", "case-studies/cso-10.hp", "--certify", "-o", text(to)], options].concat())
+    };
+    // Two below the least T, and it.
+    let run = emit(&["--each", "T=8..10"], &path("all"));
+    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
+    let made = |name: &str| path("all").join(name).is_file();
+    assert!(made("cso-T-8.json") && made("cso-T-9.lrat.gz") && !made("cso-T-10.json"));
+    let run = certify("case-studies/cso-10.hp", &path("all"), &[]);
+    assert!(run.status == 0 && run.stdout.lines().count() == 2, "{} {}", run.stdout, run.stderr);
+    // Standard output has nothing beside it, and a wrong status has no certificate.
+    let run = hyperplan(&["emit", "case-studies/cso-10.hp", "--certify"]);
+    assert!(run.status == 2 && run.stderr.contains("-o FILE"), "{}", run.stderr);
+    let run = emit(&["--set", "T=10", "--status", "unsat"], &path("wrong.smt2"));
+    assert!(run.status == 2 && run.stderr.contains("--status unsat: "), "{}", run.stderr);
+    if !common::solver_is_there("z3") {
+        return;
+    }
+    let compared = |out: &str, more: &[&str]| {
+        let (all, out) = (path("all"), path(out));
+        let known = ["compare", text(&all), "--solver", "z3", "--out", text(&out), "--certified"];
+        hyperplan(&[&known, more].concat())
+    };
+    let run = compared("compared", &[]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    assert!(run.stderr.contains("2 of 3 known answers are certified"), "{}", run.stderr);
+    // Another benchmark than the one that the certificate names.
+    let benchmark = path("all").join("cso-T-8.smt2");
+    let own = std::fs::read_to_string(&benchmark).expect("it was written");
+    std::fs::write(&benchmark, own + "; changed\n").expect("ours");
+    let run = compared("again", &[]);
+    assert!(run.stderr.contains("1 of 3 known answers are certified"), "{}", run.stderr);
+    assert!(run.stderr.contains("the certificate is for another benchmark"), "{}", run.stderr);
+}

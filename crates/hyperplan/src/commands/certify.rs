@@ -4,6 +4,7 @@ use crate::args::{self, Certify};
 use crate::config;
 use crate::failure::{Exit, Failure, Result};
 use crate::files::{self, reason};
+use crate::foreign::Foreign;
 use crate::guard;
 use crate::load::{self, Consts, Loaded};
 use crate::output::Output;
@@ -29,6 +30,12 @@ pub(crate) fn run(args: &Certify, out: &mut Output) -> Result {
     if let Some(folder) = &args.export {
         files::make_folder(folder)?;
     }
+    let checking = Checking {
+        file: &args.file,
+        foreign: args.foreign.as_ref(),
+        export: args.export.as_deref(),
+        deadline: &deadline,
+    };
     let mut worst = Exit::Good;
     let wanted = args.selection.objective.as_deref().filter(|name| *name != "all");
     let mut checked = 0;
@@ -41,7 +48,7 @@ pub(crate) fn run(args: &Certify, out: &mut Output) -> Result {
         }
         checked += 1;
         guard::doing("checking a certificate");
-        let result = one(args, &certificate, &file, &deadline, out)?;
+        let result = check(&checking, &certificate, &file, out)?;
         let report = Report::new(&certificate, &name, &result);
         match args.output.format {
             args::Format::Json => out.line(json(&report)?)?,
@@ -71,19 +78,28 @@ fn descriptions(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(found)
 }
 
+/// What certificates are checked against, and what else becomes of them.
+pub(super) struct Checking<'a> {
+    /// The problem.
+    pub(super) file: &'a Path,
+    pub(super) foreign: Option<&'a Foreign>,
+    /// The folder for other checkers' files.
+    pub(super) export: Option<&'a Path>,
+    pub(super) deadline: &'a Deadline,
+}
+
 /// Checks one certificate against the problem with the constants that it was made for.
-fn one(
-    args: &Certify,
+pub(super) fn check(
+    checking: &Checking<'_>,
     certificate: &Certificate,
     file: &Path,
-    deadline: &Deadline,
     out: &Output,
 ) -> Result<Result<Checked, Error>> {
     let set = certificate.set.iter().map(|set| set.split_once('=').unwrap_or((set, "")));
     let problem = args::Problem {
-        file: args.file.clone(),
+        file: checking.file.to_owned(),
         set: set.map(|(name, value)| (name.to_owned(), value.to_owned())).collect(),
-        foreign: args.foreign.clone(),
+        foreign: checking.foreign.cloned(),
     };
     let (loaded, consts) = Loaded::with_consts(&problem, &load::text(&problem)?, Instant::now(), out)?;
     let Some(objective) = loaded.problem.objective(&certificate.objective) else {
@@ -100,11 +116,11 @@ fn one(
         Some((problem, objective)) => (problem, objective),
         None => (&loaded.problem, objective),
     };
-    let stop = || deadline.passed();
+    let stop = || checking.deadline.passed();
     let beside = file.with_extension(REFUTATION);
     let result =
         refutation(&beside).and_then(|mut proof| certificate.check(problem, objective, &mut proof, &stop));
-    if let (Some(folder), Ok(_)) = (&args.export, &result) {
+    if let (Some(folder), Ok(_)) = (checking.export, &result) {
         let name = file.file_stem().unwrap_or_default();
         let path = |ending: &str| folder.join(name).with_added_extension(ending);
         let exported = |error: Error| match error {
