@@ -4,9 +4,12 @@
 //! `HYPERPLAN_SEED` and `HYPERPLAN_CASES` replace the seed and the number of problems. `veripb` checks some too, where it is
 //! installed.
 
-use hyperplan_certify::{self as certify, Branch, Certificate, Checked, Checker, dimacs, pseudo_boolean};
+use hyperplan_certify::{
+    self as certify, Action, Branch, Certificate, Checked, Checker, Encoder, Instance, Start, Step, dimacs,
+    pseudo_boolean,
+};
 use hyperplan_plan::{Config, Unproved, Verdict, prove, solve};
-use hyperplan_problem::{Objective, Overrides, Problem, Quantifier, read};
+use hyperplan_problem::{Objective, Overrides, PathId, Problem, Quantifier, Type, Value, Var, read};
 use hyperplan_solver::{Deadline, Refuter, Spec};
 use hyperplan_syntax::SourceMap;
 use hyperplan_tests::brute::Brute;
@@ -241,6 +244,94 @@ fn what_is_damaged_proves_nothing_wrong() {
     }
     say(&format!("{refused} refused, {true_still} not needed"));
     assert!(refused > 100, "hardly anything was damaged");
+}
+
+/// Instances of the other player's blocks, as they come: what is none of its path is left out.
+fn any_instances(
+    dice: &mut Random,
+    problem: &Problem,
+    objective: &Objective,
+    steps: &[usize],
+) -> Vec<Branch> {
+    let (blocks, mut branches, mut depths) = (objective.blocks(), Vec::new(), vec![1]);
+    for _ in 0..12 {
+        let after = dice.below(depths.len());
+        let Some(block) = blocks.get(depths[after]) else { continue };
+        let instances =
+            block.iter().map(|&path| any_instance(dice, problem, objective, path, steps)).collect();
+        branches.push(Branch { after, instances });
+        let mut encoder = Encoder::new(problem, objective, &never).expect("it is finite");
+        match encoder.tree(&branches) {
+            Ok(()) => depths.push(depths[after] + 2),
+            Err(_) => drop(branches.pop()),
+        }
+    }
+    branches
+}
+
+fn any_instance(
+    dice: &mut Random,
+    problem: &Problem,
+    objective: &Objective,
+    path: PathId,
+    steps: &[usize],
+) -> Instance {
+    let system = &problem.systems[objective.paths[path].system];
+    let (own, before) = (usize::from(path), |dice: &mut Random, n| PathId::from(dice.below(n)));
+    let (start, begun) = match own > 0 && !dice.once_in(3) {
+        true => {
+            let other = before(dice, own);
+            let begun = dice.below(steps[own].min(steps[usize::from(other)]) + 1);
+            (Start::Along(other, u32::try_from(begun).expect("few")), begun)
+        }
+        false => {
+            let value = |var: &Var| match &var.ty {
+                Type::Bool => Value::Bool(dice.flip()),
+                Type::Enum(names) => Value::Enum(u32::try_from(dice.below(names.len())).expect("few")),
+                Type::Range { lo, .. } => Value::Int(lo + i64::try_from(dice.below(2)).expect("few")),
+                Type::Int | Type::Real => unreachable!("random systems are finite"),
+            };
+            (Start::State(system.vars.iter().map(value).collect()), 0)
+        }
+    };
+    let step = |_| {
+        let action = match own > 0 && dice.flip() {
+            true => Action::Like(before(dice, own)),
+            false => Action::Is(system.actions[dice.below(system.actions.len())]),
+        };
+        Step { action, outcome: dice.bound(2) }
+    };
+    Instance { path, start, steps: (begun..steps[own]).map(step).collect() }
+}
+
+/// Whatever the instances are, and whoever chose them: where there is what a claim says that there is not, the clauses have a
+/// model.
+#[test]
+fn no_instances_refute_what_is_wrong() {
+    let (mut wrong, mut instances) = (0, 0);
+    for seed in seeds(1000) {
+        let (model, verdict, text) = random(seed);
+        if verdict != model.exists[0] {
+            continue;
+        }
+        let typed = lowered(&text);
+        let objective = &typed.objectives[0];
+        let steps = horizons(&typed, objective);
+        let branches = any_instances(&mut Random::new(seed), &typed, objective, &steps);
+        let mut encoder = Encoder::new(&typed, objective, &never).expect("it is finite");
+        encoder.tree(&branches).unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
+        assert!(has_model(&encoder.take()), "seed {seed}: {branches:?}\n{text}");
+        wrong += 1;
+        instances += branches.len();
+    }
+    say(&format!("{wrong} wrong claims, {instances} instances of their other player"));
+    assert!(2 * instances > wrong, "hardly any instance");
+}
+
+/// The last times at which paths are read.
+fn horizons(problem: &Problem, objective: &Objective) -> Vec<usize> {
+    let outcome = solve(problem, objective, &Config::new(Spec::Builtin)).expect("it is small");
+    outcome.horizons.iter().map(|steps| usize::try_from(steps.unwrap_or(0)).expect("few")).collect()
 }
 
 fn case_study(objective: &str, size: u32, horizon: u32) -> Problem {

@@ -2,9 +2,10 @@
 
 use super::{About, At, BEYOND, Copy, Encoder, Scope, Tail, View};
 use crate::error::Error;
-use crate::instance::{Action, Instance, targets};
+use crate::instance::{Action, Instance, Step, targets};
 use crate::layer::{Acts, Lit, TRUE};
 use hyperplan_problem::{ActionId, FormulaId, PathId};
+use std::iter::successors;
 use std::rc::Rc;
 
 /// A step of a tail: where these are true it gets there; or, if it is none, it is no path.
@@ -89,7 +90,11 @@ impl<'p> Encoder<'p> {
     /// The variable that a path with a tail is none, if that can be: it is true only if a step that it has to make is impossible.
     pub(super) fn ends(&mut self, scope: &Scope, tail: Tail) -> Result<Option<Lit>, Error> {
         let At::Along(begun) = tail.at else { return Ok(None) };
-        if !self.graph(tail.path).is_partial {
+        // The steps are a list, of which each names the next.
+        let next = |step: &(Step, usize)| self.steps.get(step.1.wrapping_sub(1)).copied();
+        let first = self.steps.get(tail.steps.wrapping_sub(1)).copied();
+        let is_sure = successors(first, next).all(|(step, _)| step.outcome == 0);
+        if is_sure && !self.graph(tail.path).is_partial {
             return Ok(None);
         }
         let none = self.fresh();
