@@ -4,9 +4,12 @@
 //! `HYPERPLAN_SEED` and `HYPERPLAN_CASES` replace the seed and the number of problems. `veripb` checks some too, where it is
 //! installed.
 
-use hyperplan_certify::{self as certify, Branch, Certificate, Checked, Checker, dimacs, pseudo_boolean};
+use hyperplan_certify::{
+    self as certify, Action, Branch, Certificate, Checked, Checker, Encoder, Instance, Start, Step, dimacs,
+    pseudo_boolean,
+};
 use hyperplan_plan::{Config, Unproved, Verdict, prove, solve};
-use hyperplan_problem::{Objective, Overrides, Problem, Quantifier, read};
+use hyperplan_problem::{Objective, Overrides, PathId, Problem, Quantifier, Type, Value, Var, read};
 use hyperplan_solver::{Deadline, Refuter, Spec};
 use hyperplan_syntax::SourceMap;
 use hyperplan_tests::brute::Brute;
@@ -70,6 +73,35 @@ fn random(seed: u64) -> (model::Problem, bool, String) {
     let verdict = Brute::new(&random, usize::MAX / 8).expect("no limit").verdict();
     let text = fixture(&random.to_string(), verdict);
     (random, verdict, text)
+}
+
+/// A random claim that is true, and its certificate.
+struct Case {
+    seed: u64,
+    model: model::Problem,
+    text: String,
+    typed: Problem,
+    made: Made,
+}
+
+impl Case {
+    fn objective(&self) -> &Objective {
+        &self.typed.objectives[0]
+    }
+}
+
+/// Random claims that are true, each with its certificate.
+fn true_claims(cases: u64) -> impl Iterator<Item = Case> {
+    seeds(cases).filter_map(|seed| {
+        let (model, verdict, text) = random(seed);
+        if verdict == model.exists[0] {
+            return None;
+        }
+        let typed = lowered(&text);
+        let made = Made::new(&typed, &typed.objectives[0]);
+        let made = made.unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
+        Some(Case { seed, model, text, typed, made })
+    })
 }
 
 #[test]
@@ -160,16 +192,10 @@ fn without(branches: &[Branch], gone: usize) -> Vec<Branch> {
 #[test]
 fn what_is_damaged_proves_nothing_wrong() {
     let (mut refused, mut true_still) = (0, 0);
-    for seed in seeds(200) {
-        let (random, verdict, text) = random(seed);
-        if verdict == random.exists[0] {
-            continue;
-        }
-        let typed = lowered(&text);
-        let objective = &typed.objectives[0];
-        let made =
-            Made::new(&typed, objective).unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
-        let (clauses, mut dice) = (made.clauses(&typed, objective), Random::new(seed));
+    for case in true_claims(200) {
+        let (objective, Case { seed, model: random, text, typed, made }) = (case.objective(), &case);
+        let seed = *seed;
+        let (clauses, mut dice) = (made.clauses(typed, objective), Random::new(seed));
         // A clause less: refused unless the others have no model either.
         let starts: Vec<usize> = (0..clauses.len()).filter(|&at| at == 0 || clauses[at - 1] == 0).collect();
         for _ in 0..5 {
@@ -201,8 +227,8 @@ fn what_is_damaged_proves_nothing_wrong() {
         // Instances less or more: whatever is accepted, the claim is true, and the refutation belongs to its clauses.
         for at in 0..made.branches.len() {
             let other = Made { branches: without(&made.branches, at), refutation: made.refutation.clone() };
-            if has_model(&other.clauses(&typed, objective)) {
-                assert!(other.check(&typed, objective).is_err(), "seed {seed}: without an instance\n{text}");
+            if has_model(&other.clauses(typed, objective)) {
+                assert!(other.check(typed, objective).is_err(), "seed {seed}: without an instance\n{text}");
                 refused += 1;
             }
         }
@@ -218,6 +244,94 @@ fn what_is_damaged_proves_nothing_wrong() {
     }
     say(&format!("{refused} refused, {true_still} not needed"));
     assert!(refused > 100, "hardly anything was damaged");
+}
+
+/// Instances of the other player's blocks, as they come: what is none of its path is left out.
+fn any_instances(
+    dice: &mut Random,
+    problem: &Problem,
+    objective: &Objective,
+    steps: &[usize],
+) -> Vec<Branch> {
+    let (blocks, mut branches, mut depths) = (objective.blocks(), Vec::new(), vec![1]);
+    for _ in 0..12 {
+        let after = dice.below(depths.len());
+        let Some(block) = blocks.get(depths[after]) else { continue };
+        let instances =
+            block.iter().map(|&path| any_instance(dice, problem, objective, path, steps)).collect();
+        branches.push(Branch { after, instances });
+        let mut encoder = Encoder::new(problem, objective, &never).expect("it is finite");
+        match encoder.tree(&branches) {
+            Ok(()) => depths.push(depths[after] + 2),
+            Err(_) => drop(branches.pop()),
+        }
+    }
+    branches
+}
+
+fn any_instance(
+    dice: &mut Random,
+    problem: &Problem,
+    objective: &Objective,
+    path: PathId,
+    steps: &[usize],
+) -> Instance {
+    let system = &problem.systems[objective.paths[path].system];
+    let (own, before) = (usize::from(path), |dice: &mut Random, n| PathId::from(dice.below(n)));
+    let (start, begun) = match own > 0 && !dice.once_in(3) {
+        true => {
+            let other = before(dice, own);
+            let begun = dice.below(steps[own].min(steps[usize::from(other)]) + 1);
+            (Start::Along(other, u32::try_from(begun).expect("few")), begun)
+        }
+        false => {
+            let value = |var: &Var| match &var.ty {
+                Type::Bool => Value::Bool(dice.flip()),
+                Type::Enum(names) => Value::Enum(u32::try_from(dice.below(names.len())).expect("few")),
+                Type::Range { lo, .. } => Value::Int(lo + i64::try_from(dice.below(2)).expect("few")),
+                Type::Int | Type::Real => unreachable!("random systems are finite"),
+            };
+            (Start::State(system.vars.iter().map(value).collect()), 0)
+        }
+    };
+    let step = |_| {
+        let action = match own > 0 && dice.flip() {
+            true => Action::Like(before(dice, own)),
+            false => Action::Is(system.actions[dice.below(system.actions.len())]),
+        };
+        Step { action, outcome: dice.bound(2) }
+    };
+    Instance { path, start, steps: (begun..steps[own]).map(step).collect() }
+}
+
+/// Whatever the instances are, and whoever chose them: where there is what a claim says that there is not, the clauses have a
+/// model.
+#[test]
+fn no_instances_refute_what_is_wrong() {
+    let (mut wrong, mut instances) = (0, 0);
+    for seed in seeds(1000) {
+        let (model, verdict, text) = random(seed);
+        if verdict != model.exists[0] {
+            continue;
+        }
+        let typed = lowered(&text);
+        let objective = &typed.objectives[0];
+        let steps = horizons(&typed, objective);
+        let branches = any_instances(&mut Random::new(seed), &typed, objective, &steps);
+        let mut encoder = Encoder::new(&typed, objective, &never).expect("it is finite");
+        encoder.tree(&branches).unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
+        assert!(has_model(&encoder.take()), "seed {seed}: {branches:?}\n{text}");
+        wrong += 1;
+        instances += branches.len();
+    }
+    say(&format!("{wrong} wrong claims, {instances} instances of their other player"));
+    assert!(2 * instances > wrong, "hardly any instance");
+}
+
+/// The last times at which paths are read.
+fn horizons(problem: &Problem, objective: &Objective) -> Vec<usize> {
+    let outcome = solve(problem, objective, &Config::new(Spec::Builtin)).expect("it is small");
+    outcome.horizons.iter().map(|steps| usize::try_from(steps.unwrap_or(0)).expect("few")).collect()
 }
 
 fn case_study(objective: &str, size: u32, horizon: u32) -> Problem {
@@ -306,35 +420,30 @@ fn by_veripb(veripb: &Path, made: &Made, problem: &Problem, objective: &Objectiv
     String::from_utf8_lossy(&output.stdout).contains("s VERIFIED UNSATISFIABLE")
 }
 
+/// Both checkers accept certificates of random problems, of several alternations too.
 #[test]
 fn another_checker_accepts_them_too() {
     let Some(veripb) = veripb() else { return };
-    for seed in seeds(100) {
-        let (random, verdict, text) = random(seed);
-        if verdict != random.exists[0] {
-            let typed = lowered(&text);
-            let objective = &typed.objectives[0];
-            let made =
-                Made::new(&typed, objective).unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
-            assert!(by_veripb(&veripb, &made, &typed, objective), "seed {seed}\n{text}");
-        }
+    let (mut accepted, mut alternating, mut instances) = (0, 0, 0);
+    for case in true_claims(100) {
+        let (seed, text, typed, objective) = (case.seed, &case.text, &case.typed, case.objective());
+        let checked = case.made.check(typed, objective);
+        let checked = checked.unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
+        assert!(by_veripb(&veripb, &case.made, typed, objective), "seed {seed}\n{text}");
+        accepted += 1;
+        alternating += u64::from(objective.blocks().len() > 2);
+        instances += checked.instances;
     }
+    say(&format!("{accepted} accepted, {alternating} of three and more blocks, {instances} instances"));
 }
 
 #[test]
 fn a_certificate_is_for_one_problem() {
     let (mut others, mut found) = (0, 0);
-    for seed in seeds(60) {
-        let (random, verdict, text) = random(seed);
-        if verdict == random.exists[0] {
-            continue;
-        }
-        let typed = lowered(&text);
-        let objective = &typed.objectives[0];
-        let made =
-            Made::new(&typed, objective).unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
+    for case in true_claims(60) {
+        let (objective, Case { seed, text, typed, made, .. }) = (case.objective(), &case);
         let own =
-            Certificate::new(&typed, objective, Vec::new(), &made.branches, &never).expect("it was encoded");
+            Certificate::new(typed, objective, Vec::new(), &made.branches, &never).expect("it was encoded");
         // As a file and back.
         let (folder, mut written) = (folder(), Vec::new());
         own.write(&mut written).expect("to memory");
@@ -344,8 +453,8 @@ fn a_certificate_is_for_one_problem() {
         let check = |problem: &Problem| {
             own.check(problem, &problem.objectives[0], &mut Cursor::new(&made.refutation), &never)
         };
-        check(&typed).unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
-        let same = own.branches(&typed, objective).expect("it was read");
+        check(typed).unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
+        let same = own.branches(typed, objective).expect("it was read");
         assert_eq!(same, made.branches, "seed {seed}\n{text}");
         found += 1;
         let other = lowered(&self::random(seed.wrapping_add(1)).2);

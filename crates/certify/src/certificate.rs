@@ -1,5 +1,6 @@
 //! Certificates as files, and what it takes for one to count.
 
+use crate::cost::Bound;
 use crate::encode::Encoder;
 use crate::error::Error;
 use crate::instance::{self, Branch, BranchFile};
@@ -55,6 +56,12 @@ pub struct Certificate {
     pub objective: String,
     /// What is claimed of it.
     pub claim: Claim,
+    /// Of which strategies only: those with such costs, by [`crate::with_bounds`].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub costs: Vec<Bound>,
+    /// The benchmark whose status it certifies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub benchmark: Option<Benchmark>,
     /// The digest of what the problem means.
     pub problem: String,
     /// How many variables the clauses have.
@@ -62,6 +69,16 @@ pub struct Certificate {
     /// How many clauses there are.
     pub clauses: u64,
     instances: Vec<BranchFile>,
+}
+
+/// A benchmark that was written of a problem.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Benchmark {
+    /// The digest of its file, which has the certificate's name.
+    pub sha256: String,
+    /// The problem's file, from the folder of the certificate on.
+    pub file: String,
 }
 
 /// What was checked.
@@ -78,7 +95,7 @@ pub struct Checked {
 }
 
 impl Certificate {
-    /// The certificate of a claim that these instances refute.
+    /// The certificate of a claim that these instances refute. Where it is about costs, these are left to be said.
     ///
     /// # Errors
     /// Where they are none of the objective.
@@ -97,6 +114,8 @@ impl Certificate {
             set,
             objective: objective.name.clone(),
             claim: Claim::of(objective),
+            costs: Vec::new(),
+            benchmark: None,
             problem: digest(problem, objective),
             variables: encoder.variables(),
             clauses: clauses(&encoder.take()).count() as u64,

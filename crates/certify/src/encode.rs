@@ -27,30 +27,43 @@
 //! Every clause is true under this assignment; beside each the reason is given, if it is not that of a definition. The last one
 //! says that the formula, read on the copies of one branch, comes out as the player wants, unless an instance is none.
 //!
+//! # Tails
+//!
+//! Where the other player's last block is one path, no path follows from its instances, and their own steps have no `x`. From a
+//! state at a time, by the steps that are left, exactly one path goes on, given the paths before it; if a step is impossible, let
+//! it stay where it is, so that there is one always. That is a *tail*. A part of the formula at that time is true of it or not, and
+//! this is what the variable of the part and the tail says. Instances that come to the same state at the same time with the same
+//! steps left share it, and all that comes after. What is true of a tail at the next time is true of that which its step leads
+//! to, which depends on an action of another path alone (and, in the first of the own steps, on where the copy along which it
+//! went is): `later` says so, action by action. An instance is none if a tail makes a step that is impossible: `ends`.
+//!
 //! # What is left out
 //!
 //! Only states that are reached from the start at that time have variables: a path is in one of them. No other pruning is done. A
-//! path of the leading block starts where the conjuncts of the formula that read only its first state allow: they have to hold, as the other player has
-//! at least one path (else nothing is left out). In bounded mode paths go on for ever, and so are in *live* states only; under `within K` a path has K
-//! steps.
+//! path of the leading block starts where the conjuncts of the formula that read only its first state allow: they have to hold, as
+//! the other player has at least one path (else nothing is left out). In bounded mode paths go on for ever, and so are in *live*
+//! states only; under `within K` a path has K steps.
+//!
+//! This file has the paths, `tail` the tails, `formula` the formula, and `atoms` what it reads. `answer` is not part of the argument.
 
 mod answer;
+mod atoms;
+mod formula;
+mod tail;
 
 use crate::error::Error;
-use crate::instance::{Action, Branch, Instance, Start, targets};
+use crate::instance::{Action, Branch, Instance, Start, Step, targets};
 use crate::layer::{Acts, FALSE, Layer, Lit, Next, Order, TRUE};
-use crate::reading::{VALUE_BOOL, alone, last_reads, number, reads, value_of};
+use crate::reading::{alone, last_reads, reads};
 use crate::system::Graph;
 use hyperplan_problem::{
-    ActionId, Comparison, Expr, FormulaId, Interval, Leaf, Mode, Node, Objective, PathId, PathLeaf, Problem,
-    Quantifier, Value,
+    Expr, FormulaId, Mode, Node, Objective, PathId, PathLeaf, Problem, Quantifier, SystemId, Value,
 };
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::rc::Rc;
 
-/// So many numbers are written, and so many combinations of values of an atom.
+/// So many numbers are written.
 const SIZE: usize = 1 << 29;
-const COMBINATIONS: usize = 1 << 20;
 
 /// A path in the tree of instances.
 struct Copy {
@@ -67,8 +80,40 @@ type Beginning = (Vec<Rc<Layer>>, Vec<Rc<Acts>>);
 #[derive(Clone, Default)]
 struct Scope {
     copies: Vec<Option<usize>>,
+    /// The path that is an instance of the last block.
+    tail: Option<Tail>,
     guard: Vec<Lit>,
 }
+
+/// What is known of a path with a tail at a time.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+struct Tail {
+    path: PathId,
+    at: At,
+    /// What it has just done.
+    took: Option<Action>,
+    /// What it does next, by its number in the list of steps.
+    steps: usize,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum At {
+    /// Where its copy is, which goes along another path until this time.
+    Along(usize),
+    State(u32),
+    /// That does not matter.
+    Anywhere,
+}
+
+/// The paths of a branch at a time.
+#[derive(Clone)]
+struct View {
+    scope: Rc<Scope>,
+    tail: Option<Tail>,
+}
+
+/// What a part of the formula is about: copies, and a tail.
+type About = (Vec<Option<usize>>, Option<Tail>);
 
 /// A place in the tree: behind the player's answer to a branch, given by its position from 1 on, or (0) behind the leading block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,16 +151,22 @@ pub struct Encoder<'p> {
     layers: u32,
     written: usize,
     clauses: Vec<i32>,
-    goals: FxHashMap<(Goal, Vec<Option<usize>>), Lit>,
-    open: Vec<(Lit, Goal, Rc<Scope>)>,
+    goals: FxHashMap<(Goal, About), Lit>,
+    open: Vec<(Lit, Goal, View)>,
+    /// What tails do: a step, and the number of the next, from 1 on.
+    steps: Vec<(Step, usize)>,
+    numbers: FxHashMap<(Step, usize), usize>,
+    /// Where tails are none.
+    nones: FxHashMap<(Tail, Vec<Option<usize>>), Lit>,
+    /// Layers of which the state is known.
+    points: FxHashMap<(SystemId, u32), Rc<Layer>>,
     orders: FxHashMap<(Read, u32), Rc<Order>>,
-    /// Expressions that stay true, or false, in the step from a layer to the next.
-    stays: FxHashSet<(Read, u32, u32, bool)>,
     /// Layers of which it is said that a path is in one state only.
     single: FxHashSet<u32>,
-    atoms: FxHashMap<(usize, u32, Vec<Option<usize>>), Lit>,
-    /// The paths that each part of the formula reads.
+    atoms: FxHashMap<(usize, u32, About), Lit>,
+    /// The paths that each part of the formula reads, and those of which it reads states.
     reads: Vec<Vec<PathId>>,
+    reads_states: Vec<Vec<PathId>>,
 }
 
 impl<'p> Encoder<'p> {
@@ -149,14 +200,18 @@ impl<'p> Encoder<'p> {
             clauses: Vec::new(),
             goals: FxHashMap::default(),
             open: Vec::new(),
+            steps: Vec::new(),
+            numbers: FxHashMap::default(),
+            nones: FxHashMap::default(),
+            points: FxHashMap::default(),
             orders: FxHashMap::default(),
-            stays: FxHashSet::default(),
             single: FxHashSet::default(),
             atoms: FxHashMap::default(),
-            reads: reads(objective),
+            reads: reads(objective, false),
+            reads_states: reads(objective, true),
         };
         let copies = vec![None; objective.paths.len()];
-        encoder.enter(Scope { copies, guard: Vec::new() }, 0)?;
+        encoder.enter(Scope { copies, tail: None, guard: Vec::new() }, 0)?;
         Ok(encoder)
     }
 
@@ -176,9 +231,16 @@ impl<'p> Encoder<'p> {
         if paths.is_empty() || !instances.iter().map(|own| own.path).eq(paths) {
             return Err(Error::Unreadable("a branch has other paths than its block".to_owned()));
         }
+        let is_last = block + 2 >= self.blocks.len() && instances.len() == 1;
         for instance in instances {
-            let (copy, none) = self.follow(instance, &scope)?;
+            let (copy, mut none) = match is_last {
+                true => (self.tail(instance, &mut scope)?, None),
+                false => self.follow(instance, &scope)?,
+            };
             scope.copies[usize::from(instance.path)] = Some(copy);
+            if let Some(tail) = scope.tail {
+                none = self.ends(&scope, tail)?;
+            }
             scope.guard.extend(none);
         }
         self.enter(scope, block + 1)
@@ -508,466 +570,10 @@ impl<'p> Encoder<'p> {
         self.objective.paths.first().is_none_or(|path| path.quantifier == Quantifier::Exists)
     }
 
-    /// The formula comes out as the player wants, unless an instance is none.
-    fn demand(&mut self, scope: &Scope) -> Result<(), Error> {
-        let scope = Rc::new(scope.clone());
-        let root = self.objective.formula.root();
-        let lit = self.part(root, 0, self.wants(), &scope)?;
-        self.add(&scope.guard, [lit])?;
-        while let Some((lit, goal, scope)) = self.open.pop() {
-            self.expand(lit, goal, &scope)?;
-        }
-        Ok(())
-    }
-
-    /// A part of the formula at a time.
-    fn part(&mut self, node: FormulaId, time: u32, positive: bool, scope: &Rc<Scope>) -> Result<Lit, Error> {
-        let constant = |holds: bool| Ok(if holds == positive { TRUE } else { FALSE });
-        let within = match self.objective.mode {
-            Mode::Within(steps) => Some(steps.saturating_sub(time)),
-            Mode::Bounded => None,
-        };
-        let objective = self.objective;
-        match &objective.formula.nodes[node] {
-            Node::Not(a) => return self.part(*a, time, !positive, scope),
-            Node::And(all) if all.is_empty() => return constant(true),
-            Node::Or(all) if all.is_empty() => return constant(false),
-            // Beyond the last position strong next fails, and weak next holds.
-            Node::Next(_) if within == Some(0) => return constant(false),
-            Node::WeakNext(_) if within == Some(0) => return constant(true),
-            Node::Next(a) | Node::WeakNext(a) => return self.part(*a, time + 1, positive, scope),
-            Node::Until(Interval { lo, hi }, _, right) | Node::Release(Interval { lo, hi }, _, right) => {
-                let hi = hi.unwrap_or(u32::MAX).min(within.unwrap_or(u32::MAX));
-                if *lo > hi {
-                    return constant(matches!(objective.formula.nodes[node], Node::Release(..)));
-                }
-                let strong = matches!(objective.formula.nodes[node], Node::Until(..)) == positive;
-                let known = self.goals.len();
-                let lit = self.goal(Goal { node, time, rest: (*lo, hi), positive }, scope);
-                if strong && self.goals.len() > known {
-                    self.by_the_end(lit, *right, (time, time + hi), positive, scope)?;
-                }
-                return Ok(lit);
-            }
-            Node::And(_) | Node::Or(_) | Node::Iff(..) | Node::Atom(_) => {}
-        }
-        Ok(self.goal(Goal { node, time, rest: (0, 0), positive }, scope))
-    }
-
-    /// What has to come true by some time, and stays true, is true at that time. This follows from the other clauses, but not by
-    /// unit propagation alone.
-    fn by_the_end(
-        &mut self,
-        lit: Lit,
-        mut node: FormulaId,
-        (time, end): (u32, u32),
-        mut positive: bool,
-        scope: &Scope,
-    ) -> Result<(), Error> {
-        let objective = self.objective;
-        while let Node::Not(a) = &objective.formula.nodes[node] {
-            (node, positive) = (*a, !positive);
-        }
-        let Node::Atom(expr) = &objective.formula.nodes[node] else { return Ok(()) };
-        let mut expr = expr;
-        while let Expr::Not(a) = expr {
-            (expr, positive) = (a, !positive);
-        }
-        let Some(path) = alone(expr) else { return Ok(()) };
-        let read = Read::Expr(std::ptr::from_ref(expr) as usize);
-        let mut last = self.order(read, expr, time, scope)?;
-        for now in time..end {
-            last = self.order(read, expr, now + 1, scope)?;
-            let layers = &self.copy(path, scope)?.layers[now as usize..now as usize + 2];
-            if !self.stays.contains(&(read, layers[0].id, layers[1].id, positive)) {
-                return Ok(());
-            }
-        }
-        let holds = last.at_least(1);
-        self.add(&[], [-lit, if positive { holds } else { -holds }])
-    }
-
-    /// The variable of a part; what it says is written later.
-    fn goal(&mut self, goal: Goal, scope: &Rc<Scope>) -> Lit {
-        let copies =
-            self.reads[usize::from(goal.node)].iter().map(|&p| scope.copies[usize::from(p)]).collect();
-        let key = (goal, copies);
-        if let Some(&lit) = self.goals.get(&key) {
-            return lit;
-        }
-        let lit = self.fresh();
-        self.goals.insert(key, lit);
-        self.open.push((lit, goal, Rc::clone(scope)));
-        lit
-    }
-
-    /// Writes that a part is true if its variable is.
-    fn expand(&mut self, lit: Lit, goal: Goal, scope: &Rc<Scope>) -> Result<(), Error> {
-        let Goal { node, time, rest: (lo, hi), positive } = goal;
-        let objective = self.objective;
-        match &objective.formula.nodes[node] {
-            Node::Atom(expr) => {
-                let holds = self.truth(expr, time, positive, scope)?;
-                self.add(&[], [-lit, holds])
-            }
-            both @ (Node::And(all) | Node::Or(all)) => {
-                let mut some = vec![-lit];
-                for &a in all {
-                    some.push(self.part(a, time, positive, scope)?);
-                }
-                match matches!(both, Node::And(_)) == positive {
-                    true => some[1..].iter().try_for_each(|&a| self.add(&[], [-lit, a])),
-                    false => self.add(&[], some),
-                }
-            }
-            Node::Iff(a, b) => {
-                let (yes, no) = (self.part(*a, time, true, scope)?, self.part(*a, time, false, scope)?);
-                let same = self.part(*b, time, positive, scope)?;
-                let other = self.part(*b, time, !positive, scope)?;
-                self.add(&[], [-lit, no, same])?;
-                self.add(&[], [-lit, yes, other])
-            }
-            both @ (Node::Until(_, left, right) | Node::Release(_, left, right)) => {
-                // The negation of an until is the release of the negations.
-                let strong = matches!(both, Node::Until(..)) == positive;
-                let later = |encoder: &mut Self| {
-                    let step = encoder.part(*left, time, positive, scope)?;
-                    let rest = (lo.saturating_sub(1), hi - 1);
-                    Ok::<_, Error>((step, encoder.goal(Goal { node, time: time + 1, rest, positive }, scope)))
-                };
-                if lo > 0 {
-                    let (step, next) = later(self)?;
-                    if strong {
-                        self.add(&[], [-lit, step])?;
-                        return self.add(&[], [-lit, next]);
-                    }
-                    return self.add(&[], [-lit, step, next]);
-                }
-                let now = self.part(*right, time, positive, scope)?;
-                let more = if hi > 0 { Some(later(self)?) } else { None };
-                match (strong, more) {
-                    (true, Some((step, next))) => {
-                        self.add(&[], [-lit, now, step])?;
-                        self.add(&[], [-lit, now, next])
-                    }
-                    (false, Some((step, next))) => {
-                        self.add(&[], [-lit, now])?;
-                        self.add(&[], [-lit, step, next])
-                    }
-                    (_, None) => self.add(&[], [-lit, now]),
-                }
-            }
-            Node::Not(_) | Node::Next(_) | Node::WeakNext(_) => {
-                Err(Error::Malformed { what: "a negation or next step has a variable of its own" })
-            }
-        }
-    }
-
-    /// A literal that is true only if the expression is (or is not, where `positive` is false).
-    fn truth(
-        &mut self,
-        expr: &'p Expr<PathLeaf>,
-        time: u32,
-        positive: bool,
-        scope: &Scope,
-    ) -> Result<Lit, Error> {
-        let sign = |lit: Lit| if positive { lit } else { -lit };
-        match expr {
-            Expr::Const(value) => Ok(sign(if *value == Value::Bool(true) { TRUE } else { FALSE })),
-            Expr::Not(a) => self.truth(a, time, !positive, scope),
-            _ if alone(expr).is_some() => {
-                let order = self.order(Read::Expr(std::ptr::from_ref(expr) as usize), expr, time, scope)?;
-                Ok(sign(order.at_least(1)))
-            }
-            Expr::And(all) | Expr::Or(all) => {
-                let lit = self.fresh();
-                let mut some = vec![-lit];
-                for a in all {
-                    some.push(self.truth(a, time, positive, scope)?);
-                }
-                match matches!(expr, Expr::And(_)) == positive {
-                    true => some[1..].iter().try_for_each(|&a| self.add(&[], [-lit, a]))?,
-                    false => self.add(&[], some)?,
-                }
-                Ok(lit)
-            }
-            Expr::Iff(a, b) => {
-                let (yes, no) = (self.truth(a, time, true, scope)?, self.truth(a, time, false, scope)?);
-                let (same, other) =
-                    (self.truth(b, time, positive, scope)?, self.truth(b, time, !positive, scope)?);
-                let lit = self.fresh();
-                self.add(&[], [-lit, no, same])?;
-                self.add(&[], [-lit, yes, other])?;
-                Ok(lit)
-            }
-            Expr::If(branches, last) => {
-                let mut rest = self.truth(last, time, positive, scope)?;
-                for (condition, value) in branches.iter().rev() {
-                    let (yes, no) = (
-                        self.truth(condition, time, true, scope)?,
-                        self.truth(condition, time, false, scope)?,
-                    );
-                    let value = self.truth(value, time, positive, scope)?;
-                    let lit = self.fresh();
-                    self.add(&[], [-lit, no, value])?;
-                    self.add(&[], [-lit, yes, rest])?;
-                    rest = lit;
-                }
-                Ok(rest)
-            }
-            _ => Ok(sign(self.atom(expr, time, scope)?)),
-        }
-    }
-
-    /// A literal that is true exactly if an atom of several paths, or of actions, is.
-    fn atom(&mut self, expr: &'p Expr<PathLeaf>, time: u32, scope: &Scope) -> Result<Lit, Error> {
-        if let Expr::Leaf(PathLeaf::Took(path, action)) = expr {
-            return self.took(*path, *action, time, scope);
-        }
-        let address = std::ptr::from_ref(expr) as usize;
-        let mut paths = Vec::new();
-        expr.for_each_leaf(&mut |leaf| paths.extend(leaf.paths().into_iter().flatten()));
-        let key = (address, time, paths.iter().map(|&p| scope.copies[usize::from(p)]).collect());
-        if let Some(&lit) = self.atoms.get(&key) {
-            return Ok(lit);
-        }
-        let lit = match expr {
-            Expr::Leaf(PathLeaf::SameAction(p, q)) => self.same_action(*p, *q, time, scope)?,
-            Expr::Leaf(PathLeaf::SameState(p, q)) => self.same_state(*p, *q, time, scope)?,
-            Expr::Compare(comparison, a, b) if alone(a).is_some() && alone(b).is_some() => {
-                let mut side = |e: &'p Expr<PathLeaf>| {
-                    self.order(Read::Expr(std::ptr::from_ref(e) as usize), e, time, scope)
-                };
-                let (a, b) = (side(a)?, side(b)?);
-                self.compare(*comparison, &a, &b)?
-            }
-            _ => self.combinations(expr, time, scope)?,
-        };
-        self.atoms.insert(key, lit);
-        Ok(lit)
-    }
-
     fn copy(&self, path: PathId, scope: &Scope) -> Result<&Copy, Error> {
         let copy = scope.copies.get(usize::from(path)).copied().flatten();
         copy.map(|copy| &self.copies[copy])
             .ok_or(Error::Malformed { what: "a path is read before it is chosen" })
-    }
-
-    /// The action just taken; none at time 0.
-    fn took(&self, path: PathId, action: ActionId, time: u32, scope: &Scope) -> Result<Lit, Error> {
-        let Some(step) = (time as usize).checked_sub(1) else { return Ok(FALSE) };
-        let acts = self.copy(path, scope)?.acts.get(step).ok_or(BEYOND)?;
-        Ok(acts.iter().find(|act| act.0 == action).map_or(FALSE, |act| act.1))
-    }
-
-    fn same_action(&mut self, p: PathId, q: PathId, time: u32, scope: &Scope) -> Result<Lit, Error> {
-        let Some(step) = (time as usize).checked_sub(1) else { return Ok(TRUE) };
-        let acts = |path| Ok::<_, Error>(Rc::clone(self.copy(path, scope)?.acts.get(step).ok_or(BEYOND)?));
-        let (own, other) = (acts(p)?, acts(q)?);
-        if own == other {
-            return Ok(TRUE);
-        }
-        let same = self.fresh();
-        let of = |acts: &Acts, action: ActionId| acts.iter().find(|a| a.0 == action).map_or(FALSE, |a| a.1);
-        let mut actions: Vec<ActionId> = own.iter().chain(other.iter()).map(|act| act.0).collect();
-        actions.sort_unstable();
-        actions.dedup();
-        for action in actions {
-            let (a, b) = (of(&own, action), of(&other, action));
-            self.add(&[], [-same, -a, b])?;
-            self.add(&[], [-same, -b, a])?;
-            self.add(&[], [same, -a, -b])?;
-        }
-        Ok(same)
-    }
-
-    fn same_state(&mut self, p: PathId, q: PathId, time: u32, scope: &Scope) -> Result<Lit, Error> {
-        let at = |path| Ok::<_, Error>(self.copy(path, scope)?.layers.get(time as usize).ok_or(BEYOND)?.id);
-        if at(p)? == at(q)? {
-            return Ok(TRUE);
-        }
-        let same = self.fresh();
-        let mut some = vec![same];
-        for var in self.problem.systems[self.objective.paths[p].system].vars.keys() {
-            let mut side = |path| {
-                let leaf = PathLeaf::State(path, Leaf::Var(var));
-                self.order(Read::Leaf(leaf), &Expr::Leaf(leaf), time, scope)
-            };
-            let (a, b) = (side(p)?, side(q)?);
-            let equal = self.compare(Comparison::Eq, &a, &b)?;
-            self.add(&[], [-same, equal])?;
-            some.push(-equal);
-        }
-        self.add(&[], some)?;
-        Ok(same)
-    }
-
-    /// What an expression over one path's state is at a time.
-    fn order(
-        &mut self,
-        read: Read,
-        expr: &Expr<PathLeaf>,
-        time: u32,
-        scope: &Scope,
-    ) -> Result<Rc<Order>, Error> {
-        let path = alone(expr).ok_or(Error::Malformed { what: "an expression reads several paths" })?;
-        let copy = self.copy(path, scope)?;
-        let layer = Rc::clone(copy.layers.get(time as usize).ok_or(BEYOND)?);
-        if let Some(order) = self.orders.get(&(read, layer.id)) {
-            return Ok(Rc::clone(order));
-        }
-        let (guard, graph) = (copy.guard.clone(), self.graph(path));
-        let mut cells: Vec<(i64, Lit)> = Vec::with_capacity(layer.cells.len());
-        for &(state, x) in &layer.cells {
-            cells.push((number(expr.evaluate(&mut |leaf| graph.leaf(state, leaf)))?, x));
-        }
-        cells.sort_unstable();
-        let mut order = Order { values: Vec::new(), lits: Vec::new() };
-        for own in cells.chunk_by(|a, b| a.0 == b.0) {
-            order.lits.push(if order.values.is_empty() { TRUE } else { self.fresh() });
-            order.values.push(own[0].0);
-        }
-        for (at, own) in cells.chunk_by(|a, b| a.0 == b.0).enumerate() {
-            let this = order.lits[at];
-            let above = order.lits.get(at + 1).copied().unwrap_or(FALSE);
-            self.add(&[], [-above, this])?;
-            for &(_, x) in own {
-                self.add(&[], [-x, this])?;
-                self.add(&[], [-x, -above])?;
-            }
-            // If this is its value, the path is in one of these states.
-            self.add(&guard, own.iter().map(|cell| cell.1).chain([-this, above]))?;
-        }
-        let order = Rc::new(order);
-        self.orders.insert((read, layer.id), Rc::clone(&order));
-        if time > 0 {
-            self.steady(read, expr, time - 1, scope)?;
-        }
-        self.steady(read, expr, time, scope)?;
-        Ok(order)
-    }
-
-    /// What a step does to a number at most: from at least so much it gets to no less than the least of what all steps from
-    /// there lead to, and likewise for the greatest. So what stays true once it is true is known to.
-    fn steady(&mut self, read: Read, expr: &Expr<PathLeaf>, time: u32, scope: &Scope) -> Result<(), Error> {
-        let path = alone(expr).ok_or(Error::Malformed { what: "an expression reads several paths" })?;
-        let copy = self.copy(path, scope)?;
-        let (guard, graph, lasting) = (copy.guard.clone(), self.graph(path), self.lasting());
-        let Some([layer, next]) = copy.layers.get(time as usize..time as usize + 2) else { return Ok(()) };
-        let known = |layer: &Layer| self.orders.get(&(read, layer.id)).cloned();
-        let (Some(before), Some(after)) = (known(layer), known(next)) else { return Ok(()) };
-        let value = |state: u32| number(expr.evaluate(&mut |leaf| graph.leaf(state, leaf)));
-        let mut bounds: FxHashMap<i64, (i64, i64)> = FxHashMap::default();
-        for &(state, _) in &layer.cells {
-            let bound = bounds.entry(value(state)?).or_insert((i64::MAX, i64::MIN));
-            for &(action, _) in copy.acts[time as usize].iter() {
-                for to in targets(&graph, state, action, lasting) {
-                    let there = value(to)?;
-                    *bound = (bound.0.min(there), bound.1.max(there));
-                }
-            }
-        }
-        // Of truth values: whether it stays true, and false.
-        let of = |n: i64| bounds.get(&n).copied().unwrap_or((n, n));
-        let here = (read, layer.id, next.id);
-        let stay = [(true, of(1).0 == 1), (false, of(0).1 == 0)];
-        self.stays.extend(stay.iter().filter(|s| s.1).map(|s| (here.0, here.1, here.2, s.0)));
-        let (mut least, mut most) = (i64::MAX, i64::MIN);
-        for &n in before.values.iter().rev() {
-            least = bounds.get(&n).map_or(least, |bound| least.min(bound.0));
-            self.add(&guard, [-before.at_least(n), after.at_least(least)])?;
-        }
-        for &n in &before.values {
-            // Of values below this one.
-            self.add(&guard, [before.at_least(n), -after.at_least(most.saturating_add(1))])?;
-            most = bounds.get(&n).map_or(most, |bound| most.max(bound.1));
-        }
-        Ok(())
-    }
-
-    /// A literal that is true exactly if the comparison is.
-    fn compare(&mut self, comparison: Comparison, a: &Order, b: &Order) -> Result<Lit, Error> {
-        let lit = self.fresh();
-        match comparison {
-            Comparison::Lt => {
-                let le = self.compare(Comparison::Le, b, a)?;
-                return Ok(-le);
-            }
-            Comparison::Le => {
-                for &n in &a.values {
-                    self.add(&[], [-lit, -a.at_least(n), b.at_least(n)])?;
-                }
-                for &n in &b.values {
-                    self.add(&[], [lit, -b.at_least(n), a.at_least(n + 1)])?;
-                }
-            }
-            Comparison::Eq => {
-                for &n in a.values.iter().chain(&b.values) {
-                    self.add(&[], [-lit, -a.at_least(n), b.at_least(n)])?;
-                    self.add(&[], [-lit, -b.at_least(n), a.at_least(n)])?;
-                    let [a_above, b_above] = [a, b].map(|order| order.at_least(n + 1));
-                    self.add(&[], [lit, -a.at_least(n), a_above, -b.at_least(n), b_above])?;
-                }
-            }
-        }
-        Ok(lit)
-    }
-
-    /// An atom by all combinations of the values that it reads.
-    fn combinations(&mut self, expr: &'p Expr<PathLeaf>, time: u32, scope: &Scope) -> Result<Lit, Error> {
-        let mut leaves: Vec<PathLeaf> = Vec::new();
-        expr.for_each_leaf(&mut |leaf| {
-            if !leaves.contains(leaf) {
-                leaves.push(*leaf)
-            }
-        });
-        let mut orders: Vec<Rc<Order>> = Vec::new();
-        let mut kinds = Vec::new();
-        for &leaf in &leaves {
-            let truth = |lit| Rc::new(Order { values: vec![0, 1], lits: vec![TRUE, lit] });
-            let (order, kind) = match leaf {
-                PathLeaf::Took(path, action) => (truth(self.took(path, action, time, scope)?), VALUE_BOOL),
-                PathLeaf::SameAction(p, q) => (truth(self.same_action(p, q, time, scope)?), VALUE_BOOL),
-                PathLeaf::SameState(p, q) => (truth(self.same_state(p, q, time, scope)?), VALUE_BOOL),
-                PathLeaf::Enabled(..) | PathLeaf::Halted(_) => {
-                    (self.order(Read::Leaf(leaf), &Expr::Leaf(leaf), time, scope)?, VALUE_BOOL)
-                }
-                PathLeaf::State(path, own) => {
-                    let system = &self.problem.systems[self.objective.paths[path].system];
-                    let order = self.order(Read::Leaf(leaf), &Expr::Leaf(leaf), time, scope)?;
-                    (order, value_of(system.leaf_type(own)))
-                }
-            };
-            orders.push(order);
-            kinds.push(kind);
-        }
-        let count = orders.iter().try_fold(1_usize, |n, order| n.checked_mul(order.values.len()));
-        if count.is_none_or(|count| count > COMBINATIONS) {
-            return Err(Error::TooLarge { what: "an atom combines too many values".to_owned() });
-        }
-        let lit = self.fresh();
-        let mut at = vec![0; orders.len()];
-        for _ in 0..count.unwrap_or(0) {
-            let mut clause = Vec::new();
-            for (order, &at) in orders.iter().zip(&at) {
-                clause.push(-order.lits[at]);
-                clause.extend(order.lits.get(at + 1));
-            }
-            let value = expr.evaluate(&mut |leaf| {
-                let which = leaves.iter().position(|own| own == leaf)?;
-                Some(kinds[which](orders[which].values[at[which]]))
-            });
-            clause.push(if number(value)? == 1 { lit } else { -lit });
-            self.add(&[], clause)?;
-            for (at, order) in at.iter_mut().zip(&orders) {
-                *at += 1;
-                if *at < order.values.len() {
-                    break;
-                }
-                *at = 0;
-            }
-        }
-        Ok(lit)
     }
 }
 

@@ -31,7 +31,7 @@ pub enum Start {
 }
 
 /// A step of an instance.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Step {
     /// The action.
     pub action: Action,
@@ -40,7 +40,7 @@ pub struct Step {
 }
 
 /// What an instance does in a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Action {
     /// This.
     Is(ActionId),

@@ -6,6 +6,7 @@
 //! is `hyperplan-plan`'s; `docs/proofs.md` takes one apart.
 
 mod certificate;
+mod cost;
 mod encode;
 mod error;
 mod instance;
@@ -15,7 +16,8 @@ mod other;
 mod reading;
 mod system;
 
-pub use certificate::{Certificate, Checked, Claim, check, compress, dimacs, refutation};
+pub use certificate::{Benchmark, Certificate, Checked, Claim, check, compress, dimacs, refutation};
+pub use cost::{Bound, with_bounds};
 pub use encode::{Encoder, Place};
 pub use error::Error;
 pub use instance::{Action, Branch, Instance, Start, Step};

@@ -6,14 +6,18 @@ use hyperplan_problem::{Expr, FormulaId, Interval, Mode, Node, Objective, PathId
 /// No path is read later.
 const LONGEST: u32 = 1 << 20;
 
-/// The paths that each part of the formula reads.
-pub(crate) fn reads(objective: &Objective) -> Vec<Vec<PathId>> {
+/// The paths that each part of the formula reads, or those of which it reads states.
+pub(crate) fn reads(objective: &Objective, states: bool) -> Vec<Vec<PathId>> {
     let mut all: Vec<Vec<PathId>> = Vec::new();
     for node in &objective.formula.nodes {
         let mut own: Vec<PathId> =
             node.children().into_iter().flat_map(|child| all[usize::from(child)].iter().copied()).collect();
         if let Node::Atom(expr) = node {
-            expr.for_each_leaf(&mut |leaf| own.extend(leaf.paths().into_iter().flatten()));
+            expr.for_each_leaf(&mut |leaf| {
+                if !states || !matches!(leaf, PathLeaf::Took(..) | PathLeaf::SameAction(..)) {
+                    own.extend(leaf.paths().into_iter().flatten());
+                }
+            });
         }
         own.sort_unstable();
         own.dedup();

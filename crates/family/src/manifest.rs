@@ -19,7 +19,7 @@ pub struct Manifest {
 
 /// The columns of the table: the names of an entry's fields, and the track.
 const COLUMNS: &str = "\
-    file,sha256,bytes,logic,status,track,objective,size,density,seed,horizon,steps,\
+    file,sha256,bytes,logic,status,certified,track,objective,size,density,seed,horizon,steps,\
     states,quantifiers,problem";
 
 impl Manifest {
@@ -115,6 +115,7 @@ mod tests {
             bytes: 5,
             logic: text("UF"),
             status: text("sat"),
+            certified: false,
             problem: text("problems/a.hp"),
             about,
         }))
@@ -162,8 +163,8 @@ mod tests {
         let table = String::from_utf8(manifest.csv().expect("plain data")).expect("text");
         assert_eq!(
             table,
-            "file,sha256,bytes,logic,status,track,objective,size,density,seed,horizon,steps,states,quantifiers,problem\n\
-             a.smt2,0,5,UF,sat,single,sp,8,10,3,least,7,onehot,keep,problems/a.hp\n"
+            "file,sha256,bytes,logic,status,certified,track,objective,size,density,seed,horizon,steps,states,quantifiers,problem\n\
+             a.smt2,0,5,UF,sat,false,single,sp,8,10,3,least,7,onehot,keep,problems/a.hp\n"
         );
         let json: serde_json::Value =
             serde_json::from_str(&manifest.json().expect("plain data")).expect("JSON");

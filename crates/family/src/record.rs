@@ -52,6 +52,9 @@ pub struct Entry {
     pub logic: String,
     /// Its status: `sat`, `unsat` or `unknown`.
     pub status: String,
+    /// Whether a certificate beside the file proves the status: there are some of `unsat` only.
+    #[serde(default)]
+    pub certified: bool,
     /// The path of the problem.
     pub problem: String,
     /// What it is about.

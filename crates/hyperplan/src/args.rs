@@ -320,6 +320,9 @@ pub(crate) struct Emit {
     /// The expected answer; `auto` solves first
     #[arg(long, value_enum, value_name = "STATUS", default_value_t = Status::Auto)]
     pub(crate) status: Status,
+    /// Where the answer is unsat, also writes a certificate of that beside the benchmark, as `solve --proof` does
+    #[arg(long)]
+    pub(crate) certify: bool,
     /// The solver to write for; without it, plain SMT-LIB for all
     #[arg(long, value_name = "SOLVER")]
     pub(crate) solver: Option<String>,

@@ -90,6 +90,21 @@ pub(crate) fn cannot_write(path: &Path, error: &io::Error) -> Failure {
     Failure::input(format_args!("cannot write {}: {}", name(path), reason(error)))
 }
 
+/// Where a file is, from the folder of another on; folders are separated by `/`.
+pub(crate) fn relative(from: &Path, to: &Path) -> Result<String> {
+    let cannot = |path: &Path, error: &io::Error| {
+        Failure::input(format_args!("cannot read {}: {}", name(path), reason(error)))
+    };
+    let whole = |path: &Path| path.canonicalize().map_err(|error| cannot(path, &error));
+    let (from, to) = (whole(from)?, whole(to)?);
+    let folder: Vec<_> = from.parent().into_iter().flat_map(Path::components).collect();
+    let file: Vec<_> = to.components().collect();
+    let common = folder.iter().zip(&file).take_while(|(a, b)| a == b).count();
+    let up = folder[common..].iter().map(|_| "..".to_owned());
+    let down = file[common..].iter().map(|part| part.as_os_str().to_string_lossy().into_owned());
+    Ok(up.chain(down).collect::<Vec<_>>().join("/"))
+}
+
 /// Refuses a file that could not be written after all the work.
 pub(crate) fn check_writable(path: &Path) -> Result<()> {
     let cannot = |why: String| Failure::input(format_args!("cannot write {}: {why}", name(path)));

@@ -5,10 +5,11 @@ use crate::files;
 use crate::load::Loaded;
 use crate::output::Output;
 use crate::wish::Wish;
-use hyperplan_certify::{Certificate, Claim, Error, compress};
-use hyperplan_plan::{Outcome, Unproved, Verdict, prove};
-use hyperplan_problem::answer::{Below, Minimized};
-use hyperplan_problem::{Objective, Problem};
+use hyperplan_certify::{Benchmark, Bound, Certificate, Claim, Error, compress, with_bounds};
+use hyperplan_compare::plan::sha256;
+use hyperplan_plan::{Proved, Unproved, Verdict, prove};
+use hyperplan_problem::answer::{Below, CostValue, Minimized};
+use hyperplan_problem::{Objective, Problem, Target};
 use hyperplan_solver::Deadline;
 use std::path::Path;
 
@@ -23,6 +24,35 @@ pub(crate) struct Prover<'a> {
     pub(crate) deadline: &'a Deadline,
 }
 
+/// What an answer says, as far as it may be certified.
+pub(crate) struct Said<'a> {
+    pub(crate) verdict: Verdict,
+    pub(crate) minimized: Option<&'a Minimized>,
+    pub(crate) costs: &'a [CostValue],
+}
+
+/// A claim: that an objective of a problem has no strategy, or no counterexample.
+struct Subject<'a> {
+    problem: &'a Problem,
+    objective: &'a Objective,
+    /// The value of a constant that the file does not have.
+    value: Option<(&'a str, i64)>,
+    /// Costs that its strategies would have.
+    costs: Vec<Bound>,
+}
+
+impl Subject<'_> {
+    /// The name of its files.
+    fn name(&self) -> String {
+        let name = &self.objective.name;
+        match (self.value, self.costs.len()) {
+            (Some((constant, value)), _) => format!("{name}-{constant}={value}"),
+            (None, 0) => name.clone(),
+            (None, number) => format!("{name}-cost-{number}"),
+        }
+    }
+}
+
 impl Prover<'_> {
     /// Certifies what an answer says is impossible; which files were made. Where there is no certificate, this is said.
     ///
@@ -31,90 +61,149 @@ impl Prover<'_> {
     pub(crate) fn prove(
         &self,
         (loaded, objective): (&Loaded, &Objective),
-        (outcome, minimized): (&Outcome, Option<&Minimized>),
+        said: &Said<'_>,
         wish: &Wish<'_>,
         out: &mut Output,
     ) -> Result<(Vec<String>, Exit)> {
-        let name = &objective.name;
-        let mut made = Vec::new();
-        let mut worst = Exit::Good;
-        let mut one = |problem: &Problem, value: Option<(&str, i64)>| -> Result<bool> {
-            let Some(objective) = problem.objective(name) else { return Ok(false) };
-            let what = value.map_or_else(
-                || name.clone(),
-                |(constant, value)| format!("{name} with {constant} = {value}"),
-            );
-            match self.write(problem, objective, value) {
-                Ok(file) => made.push(file),
-                Err((status @ (Exit::Bug | Exit::Solver), why)) => {
-                    return Err(Failure::new(status, format_args!("{what}: {why}")));
-                }
-                Err((status, why)) => {
-                    out.remark(format_args!("note: {what}: not certified: {why}"));
-                    worst = worst.max(status);
-                    // Larger values would fare no better.
-                    return Ok(false);
-                }
-            }
-            Ok(true)
-        };
-        let claims = claims(objective, outcome.verdict);
-        match (wish, minimized) {
+        let mut made = (Vec::new(), Exit::Good);
+        let claims = claims(objective, said.verdict);
+        match (wish, said.minimized) {
             (Wish::Constant(parameter), Some(minimized)) => {
                 let (first, last) = minimized.range;
                 let end = match (minimized.value, minimized.below, Claim::of(objective)) {
                     // A value for which the property holds.
                     (Some(value), _, Claim::NoCounterexample) => Some(value..value + 1),
                     (Some(value), Below::Unrealizable, Claim::NoStrategy) => Some(first..value),
-                    (None, _, Claim::NoStrategy) if outcome.verdict == Verdict::Unrealizable => {
+                    (None, _, Claim::NoStrategy) if said.verdict == Verdict::Unrealizable => {
                         Some(first..last + 1)
                     }
                     _ => None,
                 };
                 for value in end.into_iter().flatten() {
-                    if !one(&parameter.problem(value)?, Some((parameter.constant, value)))? {
+                    let problem = parameter.problem(value)?;
+                    let Some(objective) = problem.objective(&objective.name) else { break };
+                    let value = Some((parameter.constant, value));
+                    // Larger values would fare no better.
+                    if !self.one(
+                        &Subject { problem: &problem, objective, value, costs: Vec::new() },
+                        &mut made,
+                        out,
+                    )? {
                         break;
                     }
                 }
             }
             _ if claims => {
-                one(&loaded.problem, None)?;
+                let subject = Subject { problem: &loaded.problem, objective, value: None, costs: Vec::new() };
+                self.one(&subject, &mut made, out)?;
             }
-            _ => {}
+            _ => self.costs(
+                (loaded, objective),
+                (&wish.targets(loaded, objective)?, said.costs),
+                &mut made,
+                out,
+            )?,
         }
-        if !claims && !wish.targets(loaded, objective)?.is_empty() {
-            out.remark(format_args!("note: {name}: not certified: that a cost is the least"));
-            worst = worst.max(Exit::Input);
+        Ok(made)
+    }
+
+    /// Certifies that no strategy costs less: for each target that none has less of it, of those with no more of the targets before.
+    fn costs(
+        &self,
+        (loaded, objective): (&Loaded, &Objective),
+        (targets, costs): (&[Target], &[CostValue]),
+        made: &mut (Vec<String>, Exit),
+        out: &mut Output,
+    ) -> Result<()> {
+        let mut before: Vec<(Target, i64)> = Vec::new();
+        for (target, cost) in targets.iter().zip(costs) {
+            let bounds = [before.as_slice(), &[(target.clone(), cost.least - 1)]].concat();
+            let bound = |(cost, (_, most)): (&CostValue, &(Target, i64))| Bound {
+                cost: cost.expression.clone(),
+                most: *most,
+            };
+            let named = costs.iter().zip(&bounds).map(bound).collect();
+            let (problem, objective) = with_bounds(&loaded.problem, objective, &bounds)
+                .map_err(|error| Failure::new(status(&error), error))?;
+            let subject = Subject { problem: &problem, objective: &objective, value: None, costs: named };
+            // Where a value need not be the least, nothing is said of those after it.
+            if !self.one(&subject, made, out)? || cost.least < cost.value {
+                break;
+            }
+            before.push((target.clone(), cost.value));
         }
-        Ok((made, worst))
+        Ok(())
+    }
+
+    /// Makes a certificate; whether there is one.
+    fn one(&self, subject: &Subject<'_>, made: &mut (Vec<String>, Exit), out: &mut Output) -> Result<bool> {
+        let what = || match (subject.value, subject.costs.last()) {
+            (Some((constant, value)), _) => format!("{} with {constant} = {value}", subject.objective.name),
+            (None, Some(Bound { cost, most })) => format!("{} with {cost} <= {most}", subject.objective.name),
+            (None, None) => subject.objective.name.clone(),
+        };
+        match self.write(subject) {
+            Ok(file) => {
+                made.0.push(file);
+                Ok(true)
+            }
+            Err((status @ (Exit::Bug | Exit::Solver), why)) => {
+                Err(Failure::new(status, format_args!("{}: {why}", what())))
+            }
+            Err((status, why)) => {
+                out.remark(format_args!("note: {}: not certified: {why}", what()));
+                made.1 = made.1.max(status);
+                Ok(false)
+            }
+        }
     }
 
     /// Makes and writes one certificate, and says what it is called; or which status a failure has, and why.
-    fn write(
-        &self,
-        problem: &Problem,
-        objective: &Objective,
-        value: Option<(&str, i64)>,
-    ) -> Result<String, (Exit, String)> {
+    fn write(&self, subject: &Subject<'_>) -> Result<String, (Exit, String)> {
+        let &Subject { problem, objective, value, .. } = subject;
+        let set = value.map(|(constant, value)| format!("{constant}={value}"));
+        let set = self.set.iter().map(|(name, value)| format!("{name}={value}")).chain(set).collect();
+        let mut made = Made::new((problem, objective), set, self.deadline)?;
+        made.certificate.costs.clone_from(&subject.costs);
+        made.write(&self.folder.join(subject.name())).map_err(|failure| (failure.status, failure.message))
+    }
+}
+
+/// A certificate and its refutation.
+pub(crate) struct Made {
+    certificate: Certificate,
+    proved: Proved,
+}
+
+impl Made {
+    /// Makes the certificate of an objective; or says which status a failure has, and why.
+    pub(crate) fn new(
+        (problem, objective): (&Problem, &Objective),
+        set: Vec<String>,
+        deadline: &Deadline,
+    ) -> Result<Made, (Exit, String)> {
         let failed = |error: &Error| (status(error), error.to_string());
-        let proved = prove(problem, objective, self.deadline).map_err(|unproved| match unproved {
+        let proved = prove(problem, objective, deadline).map_err(|unproved| match unproved {
             Unproved::Undecided(reason) => (Exit::Undecided, reason.to_string()),
             Unproved::Certify(error) => failed(&error),
             Unproved::Failed(error) => (crate::explain::status(&error), error.to_string()),
         })?;
-        let mut set: Vec<String> = self.set.iter().map(|(name, value)| format!("{name}={value}")).collect();
-        set.extend(value.map(|(constant, value)| format!("{constant}={value}")));
-        let stop = || self.deadline.passed();
-        let certificate = Certificate::new(problem, objective, set, &proved.branches, &stop);
-        let certificate = certificate.map_err(|e| failed(&e))?;
-        let name = match value {
-            Some((constant, value)) => format!("{}-{constant}={value}", objective.name),
-            None => objective.name.clone(),
-        };
-        let file = |ending: &str| self.folder.join(format!("{name}.{ending}"));
-        let said = |failure: Failure| (failure.status, failure.message);
-        files::write(&file(REFUTATION), |to| compress(to, |to| proved.refutation(to))).map_err(said)?;
-        files::write(&file(DESCRIPTION), |to| certificate.write(to)).map_err(said)?;
+        let stop = || deadline.passed();
+        let certificate = Certificate::new(problem, objective, set, &proved.branches, &stop)
+            .map_err(|error| failed(&error))?;
+        Ok(Made { certificate, proved })
+    }
+
+    /// Says which benchmark has the status that it certifies.
+    pub(crate) fn of_benchmark(&mut self, text: &[u8], problem: String) {
+        self.certificate.benchmark = Some(Benchmark { sha256: sha256(text), file: problem });
+    }
+
+    /// Writes the files; what the description is called.
+    pub(crate) fn write(&self, base: &Path) -> Result<String> {
+        let file = |ending: &str| base.with_added_extension(ending);
+        files::write(&file(REFUTATION), |to| compress(to, |to| self.proved.refutation(to)))?;
+        files::write(&file(DESCRIPTION), |to| self.certificate.write(to))?;
         Ok(file(DESCRIPTION).display().to_string())
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::failure::{Failure, Result};
 use crate::files::{cannot_write, write_bytes};
+use crate::proof::{DESCRIPTION, REFUTATION};
 use hyperplan_family::{Head, Log, Manifest, Record, sha256};
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -87,10 +88,14 @@ impl Store {
         Ok(())
     }
 
-    /// The instances that need no more work: their benchmarks are there as they were written, or were dropped.
-    pub(crate) fn done(&self) -> BTreeSet<String> {
+    /// The instances that need no more work: their benchmarks are there as they were written, with certificates if these are
+    /// wanted, or were dropped.
+    pub(crate) fn done(&self, certify: bool) -> BTreeSet<String> {
         let (manifest, _) = Manifest::new(self.head.clone(), &self.past.records);
         let intact = manifest.benchmarks.iter().filter(|entry| {
+            if certify && entry.status == "unsat" && !entry.certified {
+                return false;
+            }
             let path = self.folder.join(&entry.file);
             fs::read(path).is_ok_and(|bytes| sha256(&bytes) == entry.sha256)
         });
@@ -102,8 +107,11 @@ impl Store {
     pub(crate) fn finish(&self) -> Result<Manifest> {
         let (manifest, alike) = Manifest::new(self.head.clone(), &self.past.records);
         for file in alike {
-            // It may be gone since an earlier run.
-            let _ = fs::remove_file(self.folder.join(file));
+            let file = self.folder.join(file);
+            // They may be gone since an earlier run.
+            for file in [file.clone(), file.with_extension(DESCRIPTION), file.with_extension(REFUTATION)] {
+                let _ = fs::remove_file(file);
+            }
         }
         let json = manifest.json().map_err(|e| Failure::input(format_args!("{e}")))?;
         let csv = manifest.csv().map_err(|e| Failure::input(format_args!("{e}")))?;

@@ -36,16 +36,21 @@ impl<'a> Wish<'a> {
             }
             Some(args::Wish::Costs(text)) => text,
         };
-        let mut sources = SourceMap::new();
-        let source = sources.add("--minimize", text.as_str());
-        let (exprs, errors) = parse_exprs(source, text);
-        if !errors.is_empty() {
-            return Err(failure(&sources, &errors));
-        }
         let start = Instant::now();
         let file = load::text(&args.problem)?;
         let (loaded, consts) = Loaded::with_consts(&args.problem, &file, start, out)?;
-        Ok((Wish::Costs { exprs, consts, sources }, loaded))
+        Ok((Wish::of_costs(text, consts)?, loaded))
+    }
+
+    /// Costs as they are written.
+    pub(crate) fn of_costs(text: &str, consts: Consts) -> Result<Wish<'static>> {
+        let mut sources = SourceMap::new();
+        let source = sources.add("--minimize", text);
+        let (exprs, errors) = parse_exprs(source, text);
+        match errors.as_slice() {
+            [] => Ok(Wish::Costs { exprs, consts, sources }),
+            errors => Err(failure(&sources, errors)),
+        }
     }
 
     /// What is to be as small as possible of an objective; nothing where a constant is.

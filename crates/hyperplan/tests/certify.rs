@@ -159,7 +159,80 @@ fn what_is_not_certified_is_said() {
             run.stderr
         );
     }
-    let run = solve("pass/costs.hp", &["--objective", "way"], &folder.path().join("costs"));
-    assert_eq!(run.status, 2, "{}", run.stderr);
-    assert!(run.stderr.contains("not certified: that a cost is the least"), "{}", run.stderr);
+}
+
+#[test]
+fn that_nothing_is_cheaper() {
+    let folder = folder();
+    let (file, objective) = ("pass/costs.hp", ["--objective", "straight"]);
+    let run = solve(file, &objective, folder.path());
+    assert_eq!((run.status, run.stderr.as_str()), (0, ""), "{}", run.stdout);
+    let run = certify(file, folder.path(), &objective);
+    assert_eq!((run.status, run.stderr.as_str()), (0, ""), "{}", run.stdout);
+    let said: Vec<&str> =
+        run.stdout.lines().map(|line| line.split(" unrealizable").next().unwrap_or("")).collect();
+    assert_eq!(
+        said,
+        [
+            "straight with cost turns[p] <= 1:",
+            "straight with cost turns[p] <= 2, 2 * cost fuel[p] + 1 <= 28:"
+        ],
+        "{}",
+        run.stdout
+    );
+    // Of the cheapest it is wrong, and of what is no cost.
+    let description = folder.path().join("straight-cost-2.json");
+    let own = std::fs::read_to_string(&description).expect("it was written");
+    for (old, new) in [("\"most\": 28", "\"most\": 29"), ("cost turns[p]", "cost nothing[p]")] {
+        assert!(own.contains(old), "{own}");
+        std::fs::write(&description, own.replace(old, new)).expect("ours");
+        let run = certify(file, folder.path(), &objective);
+        assert_eq!(run.status, 2, "{}", run.stdout);
+        assert!(run.stdout.contains(" is not certified: "), "{}", run.stdout);
+    }
+    // Of costs that the command line says.
+    let proofs = folder.path().join("both");
+    let run = solve(file, &["--objective", "way", "--minimize", "cost turns[p] + cost fuel[p]"], &proofs);
+    assert_eq!((run.status, run.stderr.as_str()), (0, ""), "{}", run.stdout);
+    let run = certify(file, &proofs, &["--objective", "way"]);
+    assert!(run.status == 0 && run.stdout.starts_with("way with cost "), "{} {}", run.stdout, run.stderr);
+}
+
+#[test]
+fn benchmarks_with_certificates() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    let emit = |options: &[&str], to: &Path| {
+        hyperplan(&[&["emit", "case-studies/cso-10.hp", "--certify", "-o", text(to)], options].concat())
+    };
+    // Two below the least T, and it.
+    let run = emit(&["--each", "T=8..10"], &path("all"));
+    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
+    let made = |name: &str| path("all").join(name).is_file();
+    assert!(made("cso-T-8.json") && made("cso-T-9.lrat.gz") && !made("cso-T-10.json"));
+    let run = certify("case-studies/cso-10.hp", &path("all"), &[]);
+    assert!(run.status == 0 && run.stdout.lines().count() == 2, "{} {}", run.stdout, run.stderr);
+    // Standard output has nothing beside it, and a wrong status has no certificate.
+    let run = hyperplan(&["emit", "case-studies/cso-10.hp", "--certify"]);
+    assert!(run.status == 2 && run.stderr.contains("-o FILE"), "{}", run.stderr);
+    let run = emit(&["--set", "T=10", "--status", "unsat"], &path("wrong.smt2"));
+    assert!(run.status == 2 && run.stderr.contains("--status unsat: "), "{}", run.stderr);
+    if !common::solver_is_there("z3") {
+        return;
+    }
+    let compared = |out: &str, more: &[&str]| {
+        let (all, out) = (path("all"), path(out));
+        let known = ["compare", text(&all), "--solver", "z3", "--out", text(&out), "--certified"];
+        hyperplan(&[&known, more].concat())
+    };
+    let run = compared("compared", &[]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    assert!(run.stderr.contains("2 of 3 known answers are certified"), "{}", run.stderr);
+    // Another benchmark than the one that the certificate names.
+    let benchmark = path("all").join("cso-T-8.smt2");
+    let own = std::fs::read_to_string(&benchmark).expect("it was written");
+    std::fs::write(&benchmark, own + "; changed\n").expect("ours");
+    let run = compared("again", &[]);
+    assert!(run.stderr.contains("1 of 3 known answers are certified"), "{}", run.stderr);
+    assert!(run.stderr.contains("the certificate is for another benchmark"), "{}", run.stderr);
 }

@@ -181,3 +181,34 @@ fn the_checker_of_the_rules_accepts_a_family() {
         .expect("python3 was found");
     assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stdout));
 }
+
+#[test]
+fn certificates_beside_benchmarks() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let certified = || {
+        let manifest = manifest(folder.path());
+        let all = manifest["benchmarks"].as_array().expect("a list").clone();
+        let unsat = all.iter().filter(|entry| entry["status"] == "unsat").count();
+        (all.into_iter().filter(|entry| entry["certified"] == true).collect::<Vec<_>>(), unsat)
+    };
+    let run = family(folder.path(), &[]);
+    assert_eq!((run.status, certified().0.len()), (0, 0), "{}", run.stderr);
+    // What was there without is made again.
+    let run = family(folder.path(), &["--certify"]);
+    let (entries, unsat) = certified();
+    assert!(run.status == 0 && entries.len() == unsat && unsat > 2, "{unsat} {}", run.stderr);
+    let said = format!("{unsat} unsat of which {unsat} certified");
+    assert!(run.stdout.contains(&said), "{}", run.stdout);
+    for entry in entries {
+        let word = |name: &str| folder.path().join(entry[name].as_str().expect("a word"));
+        let name = word("file").with_extension("");
+        let alone = tempfile::tempdir().expect("a folder");
+        for ending in ["json", "lrat.gz"] {
+            let file = name.with_added_extension(ending);
+            let copy = alone.path().join(file.file_name().expect("it has one"));
+            fs::copy(&file, copy).expect("it was written");
+        }
+        let run = hyperplan(&["certify", text(&word("problem")), text(alone.path())]);
+        assert_eq!(run.status, 0, "{} {}", run.stdout, run.stderr);
+    }
+}

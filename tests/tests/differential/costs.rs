@@ -1,8 +1,9 @@
 //! Costs against brute force: in formulas, and as what is to be as small as possible.
 
 use super::{Answers, Tally, embedded, seeds, smallest};
-use hyperplan_plan::{Cheapest, Config, Fault, Limits, Quantifiers, States, Verdict, cheapest};
-use hyperplan_problem::{CostId, PathId, Target};
+use hyperplan_certify::{check, with_bounds};
+use hyperplan_plan::{Cheapest, Config, Fault, Limits, Quantifiers, States, Value, Verdict, cheapest, prove};
+use hyperplan_problem::{self as problem, CostId, PathId, Target};
 use hyperplan_solver::{Deadline, Spec};
 use hyperplan_syntax::{SourceId, Span};
 use hyperplan_tests::brute::{Brute, Path};
@@ -87,6 +88,38 @@ fn least<'b>(brute: &'b Brute<'_>, problem: &Problem, sums: &[Sum], steps: usize
     good.map(|choice| sums.iter().map(|sum| sum.of(brute, &choice, steps)).collect()).min()
 }
 
+/// That nothing is cheaper has certificates, and that the cheapest is not there has none.
+fn certified(problem: &problem::Problem, targets: &[Target], values: &[Value], context: &dyn Fn() -> String) {
+    for (at, value) in values.iter().enumerate() {
+        let refuted = |most: i64| {
+            let before = targets[..at].iter().cloned().zip(values.iter().map(|value| value.found));
+            let bounds: Vec<(Target, i64)> = before.chain([(targets[at].clone(), most)]).collect();
+            let (problem, objective) =
+                with_bounds(problem, &problem.objectives[0], &bounds).expect("it is short");
+            match prove(&problem, &objective, &Deadline::never()) {
+                Ok(proved) => {
+                    let mut refutation = Vec::new();
+                    proved.refutation(&mut refutation).expect("to memory");
+                    let mut refutation = refutation.as_slice();
+                    let checked = check(&problem, &objective, &proved.branches, &mut refutation, &|| false);
+                    checked.unwrap_or_else(|error| panic!("{error}, {}", context()));
+                    true
+                }
+                Err(error) => {
+                    let said = error.to_string();
+                    assert!(
+                        said.contains("there is what it says that there is not"),
+                        "{said}, {}",
+                        context()
+                    );
+                    false
+                }
+            }
+        };
+        assert!(refuted(value.least - 1) && !refuted(value.least), "{at}: {}", context());
+    }
+}
+
 #[test]
 fn the_cheapest_strategy_is_what_brute_force_finds() {
     let (mut found, mut unknown) = (0_u32, 0_u32);
@@ -142,6 +175,10 @@ fn the_cheapest_strategy_is_what_brute_force_finds() {
             let verdict = expected.is_some();
             let why = wrong(Ok(outcome), &problem, &brute, &typed, verdict);
             assert!(why.is_none(), "{why:?}, {}", context());
+            // Certificates do not depend on the way.
+            if quantifiers == Quantifiers::Auto && limits.chances > 0 {
+                certified(&typed, &targets, &values, &context);
+            }
         }
     }
     say(&format!("{found} cheapest strategies, {unknown} unknown"));

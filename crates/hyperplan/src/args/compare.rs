@@ -22,6 +22,9 @@ pub(crate) struct Compare {
     /// The folder for the log of all runs, runs.jsonl, and the reports
     #[arg(long, value_name = "DIR", default_value = "comparison")]
     pub(crate) out: PathBuf,
+    /// Believes known answers only where a certificate beside the benchmark, of `emit --certify`, proves them
+    #[arg(long)]
+    pub(crate) certified: bool,
     /// Keeps the queries of each run there
     #[arg(long)]
     pub(crate) queries: bool,

@@ -4,17 +4,23 @@ use crate::args::{self, Certify};
 use crate::config;
 use crate::failure::{Exit, Failure, Result};
 use crate::files::{self, reason};
+use crate::foreign::Foreign;
 use crate::guard;
-use crate::load::Loaded;
+use crate::load::{self, Consts, Loaded};
 use crate::output::Output;
 use crate::proof::{DESCRIPTION, REFUTATION, status};
 use crate::report::json;
-use hyperplan_certify::{Certificate, Checked, Claim, Error, dimacs, pseudo_boolean, refutation};
+use crate::wish::Wish;
+use hyperplan_certify::{
+    Bound, Certificate, Checked, Claim, Error, dimacs, pseudo_boolean, refutation, with_bounds,
+};
 use hyperplan_outlet::one_line;
+use hyperplan_problem::{Objective, Problem, Target};
 use hyperplan_solver::Deadline;
 use serde::Serialize;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 pub(crate) fn run(args: &Certify, out: &mut Output) -> Result {
     let deadline = config::deadline(args.limit.timeout, None)?;
@@ -24,6 +30,12 @@ pub(crate) fn run(args: &Certify, out: &mut Output) -> Result {
     if let Some(folder) = &args.export {
         files::make_folder(folder)?;
     }
+    let checking = Checking {
+        file: &args.file,
+        foreign: args.foreign.as_ref(),
+        export: args.export.as_deref(),
+        deadline: &deadline,
+    };
     let mut worst = Exit::Good;
     let wanted = args.selection.objective.as_deref().filter(|name| *name != "all");
     let mut checked = 0;
@@ -36,7 +48,7 @@ pub(crate) fn run(args: &Certify, out: &mut Output) -> Result {
         }
         checked += 1;
         guard::doing("checking a certificate");
-        let result = one(args, &certificate, &file, &deadline, out)?;
+        let result = check(&checking, &certificate, &file, out)?;
         let report = Report::new(&certificate, &name, &result);
         match args.output.format {
             args::Format::Json => out.line(json(&report)?)?,
@@ -66,29 +78,49 @@ fn descriptions(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(found)
 }
 
+/// What certificates are checked against, and what else becomes of them.
+pub(super) struct Checking<'a> {
+    /// The problem.
+    pub(super) file: &'a Path,
+    pub(super) foreign: Option<&'a Foreign>,
+    /// The folder for other checkers' files.
+    pub(super) export: Option<&'a Path>,
+    pub(super) deadline: &'a Deadline,
+}
+
 /// Checks one certificate against the problem with the constants that it was made for.
-fn one(
-    args: &Certify,
+pub(super) fn check(
+    checking: &Checking<'_>,
     certificate: &Certificate,
     file: &Path,
-    deadline: &Deadline,
     out: &Output,
 ) -> Result<Result<Checked, Error>> {
     let set = certificate.set.iter().map(|set| set.split_once('=').unwrap_or((set, "")));
     let problem = args::Problem {
-        file: args.file.clone(),
+        file: checking.file.to_owned(),
         set: set.map(|(name, value)| (name.to_owned(), value.to_owned())).collect(),
-        foreign: args.foreign.clone(),
+        foreign: checking.foreign.cloned(),
     };
-    let loaded = Loaded::read(&problem, out)?;
+    let (loaded, consts) = Loaded::with_consts(&problem, &load::text(&problem)?, Instant::now(), out)?;
     let Some(objective) = loaded.problem.objective(&certificate.objective) else {
         return Ok(Err(Error::Foreign(format!("objective {}", certificate.objective))));
     };
-    let stop = || deadline.passed();
+    let bounded = match certificate.costs.as_slice() {
+        [] => None,
+        costs => match bounded(costs, &loaded, objective, consts) {
+            Ok(bounded) => Some(bounded),
+            Err(error) => return Ok(Err(error)),
+        },
+    };
+    let (problem, objective) = match &bounded {
+        Some((problem, objective)) => (problem, objective),
+        None => (&loaded.problem, objective),
+    };
+    let stop = || checking.deadline.passed();
     let beside = file.with_extension(REFUTATION);
-    let result = refutation(&beside)
-        .and_then(|mut proof| certificate.check(&loaded.problem, objective, &mut proof, &stop));
-    if let (Some(folder), Ok(_)) = (&args.export, &result) {
+    let result =
+        refutation(&beside).and_then(|mut proof| certificate.check(problem, objective, &mut proof, &stop));
+    if let (Some(folder), Ok(_)) = (checking.export, &result) {
         let name = file.file_stem().unwrap_or_default();
         let path = |ending: &str| folder.join(name).with_added_extension(ending);
         let exported = |error: Error| match error {
@@ -97,8 +129,8 @@ fn one(
         };
         let mut count = (0, None);
         files::write(&path("cnf"), |to| {
-            let branches = certificate.branches(&loaded.problem, objective).map_err(exported)?;
-            count = dimacs(&loaded.problem, objective, &branches, to, &stop).map_err(exported)?;
+            let branches = certificate.branches(problem, objective).map_err(exported)?;
+            count = dimacs(problem, objective, &branches, to, &stop).map_err(exported)?;
             Ok(())
         })?;
         let again = || refutation(&beside).map_err(exported);
@@ -108,12 +140,30 @@ fn one(
     Ok(result)
 }
 
+/// The objective with bounds on costs.
+fn bounded(
+    costs: &[Bound],
+    loaded: &Loaded,
+    objective: &Objective,
+    consts: Consts,
+) -> Result<(Problem, Objective), Error> {
+    let texts: Vec<&str> = costs.iter().map(|bound| bound.cost.as_str()).collect();
+    let targets = Wish::of_costs(&texts.join(", "), consts).and_then(|wish| wish.targets(loaded, objective));
+    let Some(targets) = targets.ok().filter(|targets| targets.len() == costs.len()) else {
+        return Err(Error::Unreadable("its costs are no sums of costs of the objective".to_owned()));
+    };
+    let bounds: Vec<(Target, i64)> = targets.into_iter().zip(costs.iter().map(|bound| bound.most)).collect();
+    with_bounds(&loaded.problem, objective, &bounds)
+}
+
 #[derive(Serialize)]
 struct Report<'a> {
     certificate: &'a str,
     objective: &'a str,
     /// Constants with other values than in the file.
     set: &'a [String],
+    /// What the strategies that there are none of would cost at most.
+    costs: &'a [Bound],
     claim: Claim,
     /// `certified`, or `refused`.
     verdict: &'static str,
@@ -131,6 +181,7 @@ impl<'a> Report<'a> {
             certificate: name,
             objective: &certificate.objective,
             set: &certificate.set,
+            costs: &certificate.costs,
             claim: certificate.claim,
             verdict: if result.is_ok() { "certified" } else { "refused" },
             reason: result.as_ref().err().map(Error::to_string),
@@ -142,9 +193,11 @@ impl<'a> Report<'a> {
     }
 
     fn text(&self) -> String {
-        let with = match self.set.is_empty() {
+        let costs = self.costs.iter().map(|Bound { cost, most }| format!("{cost} <= {most}"));
+        let with: Vec<String> = self.set.iter().cloned().chain(costs).collect();
+        let with = match with.is_empty() {
             true => String::new(),
-            false => format!(" with {}", one_line(&self.set.join(", "))),
+            false => format!(" with {}", one_line(&with.join(", "))),
         };
         let claim = match self.claim {
             Claim::NoStrategy => "unrealizable",
@@ -153,7 +206,9 @@ impl<'a> Report<'a> {
         let about = format!("{}{with}: {claim}", one_line(self.objective));
         match (&self.reason, self.instances, self.clauses, self.steps) {
             (None, Some(instances), Some(clauses), Some(steps)) => {
-                format!("{about}, certified: {instances} instances, {clauses} clauses, {steps} steps")
+                let count = |n: u64, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+                let (instances, clauses) = (count(instances as u64, "instance"), count(clauses, "clause"));
+                format!("{about}, certified: {instances}, {clauses}, {}", count(steps, "step"))
             }
             (reason, ..) => {
                 format!("{about} is not certified: {}", one_line(reason.as_deref().unwrap_or("no reason")))

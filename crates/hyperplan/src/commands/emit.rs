@@ -8,9 +8,11 @@ use crate::failure::{Exit, Failure, Result};
 use crate::files::{self, cannot_write, check_writable};
 use crate::load::{self, Consts, Loaded};
 use crate::output::Output;
+use crate::proof::Made;
 use hyperplan_outlet::one_line;
-use hyperplan_plan::{EmitConfig, Emitted, Limits, Quantifiers, States, emit};
-use hyperplan_problem::{Type, display};
+use hyperplan_plan::{EmitConfig, Emitted, Limits, Quantifiers, States, Status, emit};
+use hyperplan_problem::{Objective, Problem, Type, display};
+use hyperplan_solver::Deadline;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -21,6 +23,9 @@ pub(crate) fn run(args: &args::Emit, file: &Path, out: &mut Output) -> Result {
     let common = common(args, &config::date(args.date.as_deref())?, out)?;
     let whole = args::Problem { file: file.to_owned(), set: Vec::new(), foreign: args.foreign.clone() };
     let text = load::text(&whole)?;
+    if args.certify && (args.foreign.is_some() || file == Path::new("-")) {
+        return Err(Failure::input("--certify takes a problem file (.hp), which certificates name"));
+    }
     let (mut target, mut worst) = (None, Exit::Good);
     for setting in settings(args)? {
         let mut set = args.set.clone();
@@ -33,6 +38,11 @@ pub(crate) fn run(args: &args::Emit, file: &Path, out: &mut Output) -> Result {
             Some(target) => target,
             None => target.insert(Target::new(args.output.as_deref(), several)?),
         };
+        if args.certify && matches!(target, Target::Standard) {
+            return Err(Failure::input(
+                "--certify writes files beside the benchmark: give it one by -o FILE",
+            ));
+        }
         let common = EmitConfig { remarks: remarks(&loaded, &consts), ..common.clone() };
         for objective in objectives {
             for (quantifiers, states) in encodings(args) {
@@ -53,10 +63,44 @@ pub(crate) fn run(args: &args::Emit, file: &Path, out: &mut Output) -> Result {
                 }
                 let name = Name { objective: &objective.name, setting: setting.as_ref(), args };
                 target.write(&name.of(&config), &mut emitted, out)?;
+                if let Some(path) = target.path(&name.of(&config)).filter(|_| args.certify)
+                    && emitted.status == Status::Unsat
+                {
+                    let set = problem.set.iter().map(|(name, value)| format!("{name}={value}")).collect();
+                    let about = (&loaded.problem, objective, set);
+                    worst = worst.max(certify(args, about, (&path, file), &config.deadline, out)?);
+                }
             }
         }
     }
     Ok(worst)
+}
+
+/// Writes the certificate of a benchmark that is unsatisfiable; where there is none, this is said.
+fn certify(
+    args: &args::Emit,
+    (problem, objective, set): (&Problem, &Objective, Vec<String>),
+    (path, file): (&Path, &Path),
+    deadline: &Deadline,
+    out: &mut Output,
+) -> Result<Exit> {
+    let mut made = match Made::new((problem, objective), set, deadline) {
+        Ok(made) => made,
+        Err((Exit::Bug, why)) if args.status == args::Status::Unsat => {
+            return Err(Failure::input(format_args!("{}: --status unsat: {why}", objective.name)));
+        }
+        Err((status @ (Exit::Bug | Exit::Solver), why)) => {
+            return Err(Failure::new(status, format_args!("{}: {why}", objective.name)));
+        }
+        Err((status, why)) => {
+            out.remark(format_args!("note: {}: not certified: {why}", path.display()));
+            return Ok(status);
+        }
+    };
+    let cannot = |e| Failure::input(format_args!("cannot read {}: {}", path.display(), files::reason(&e)));
+    made.of_benchmark(&files::read_bytes(path).map_err(cannot)?, files::relative(path, file)?);
+    made.write(&path.with_extension(""))?;
+    Ok(Exit::Good)
 }
 
 /// What all benchmarks of a command have in common.
@@ -171,11 +215,19 @@ impl Target {
         Ok(Target::File(path.to_owned()))
     }
 
-    fn write(&self, name: &str, emitted: &mut Emitted, out: &mut Output) -> Result<()> {
+    /// The file of a benchmark.
+    fn path(&self, name: &str) -> Option<PathBuf> {
         match self {
-            Target::Standard => out.write(|w| emitted.write(w)),
-            Target::File(path) => write_to(path, emitted, out),
-            Target::Folder(folder) => write_to(&folder.join(name), emitted, out),
+            Target::Standard => None,
+            Target::File(path) => Some(path.clone()),
+            Target::Folder(folder) => Some(folder.join(name)),
+        }
+    }
+
+    fn write(&self, name: &str, emitted: &mut Emitted, out: &mut Output) -> Result<()> {
+        match self.path(name) {
+            None => out.write(|w| emitted.write(w)),
+            Some(path) => write_to(&path, emitted, out),
         }
     }
 }

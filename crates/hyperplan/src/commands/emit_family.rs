@@ -37,8 +37,12 @@ pub(crate) fn run(args: &args::Emit, out: &mut Output) -> Result {
     let manifest = store.finish()?;
     result?;
     let count = |status: &str| manifest.benchmarks.iter().filter(|entry| entry.status == status).count();
+    let certified = match manifest.benchmarks.iter().filter(|entry| entry.certified).count() {
+        0 if !args.certify => String::new(),
+        number => format!(" of which {number} certified"),
+    };
     out.line(format_args!(
-        "{}: {} benchmarks ({} sat, {} unsat, {} unknown), {} dropped; see manifest.json",
+        "{}: {} benchmarks ({} sat, {} unsat{certified}, {} unknown), {} dropped; see manifest.json",
         folder.display(),
         manifest.benchmarks.len(),
         count("sat"),
@@ -63,6 +67,7 @@ struct Work<'a> {
     quantifiers: Vec<Quantifiers>,
     /// How benchmarks are emitted, but for that.
     common: EmitConfig,
+    certify: bool,
     limit: Duration,
     deadline: Deadline,
 }
@@ -102,13 +107,14 @@ impl<'a> Work<'a> {
         // What cannot matter is left in: a solver has to find that out, which makes the harder benchmarks.
         let common = EmitConfig { limits: Limits { prune: false, ..common.limits }, ..common };
         let deadline = common.deadline.clone();
-        Ok(Work { folder, family, layout, date, states, quantifiers, common, limit, deadline })
+        let certify = args.certify;
+        Ok(Work { folder, family, layout, date, states, quantifiers, common, certify, limit, deadline })
     }
 
     /// Works through all cases, several at a time; what comes of them is noted here, in the order in which it comes.
     fn run(&self, store: &mut Store, jobs: Option<usize>, out: &Output) -> Result<()> {
         let cases: Vec<Case> = self.family.cases().collect();
-        let done = store.done();
+        let done = store.done(self.certify);
         let least: Vec<Option<Option<u32>>> =
             cases.iter().map(|case| store.past.least(&case.to_string())).collect();
         let jobs = jobs.or_else(|| std::thread::available_parallelism().ok().map(Into::into)).unwrap_or(1);

@@ -77,7 +77,7 @@ pub(super) fn run(args: &args::Compare, comparison: &Comparison, verbose: bool, 
     match ended {
         Ok(true) => {
             tidy(&folder);
-            report(&in_order(gathered.about(&runs), &runs, out), &args.out, out)
+            report(args, &in_order(gathered.about(&runs), &runs, out), out)
         }
         Ok(false) => {
             out.error(format_args!("interrupted: {kept}"));

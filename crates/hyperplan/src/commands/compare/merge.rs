@@ -22,11 +22,11 @@ pub(super) fn run(args: &args::Compare, out: &mut Output) -> Result {
     let folder = prepare(&args.out).map_err(|error| cannot_write(&args.out, &error))?;
     let records = put_together(args, &more, out)?;
     tidy(&folder);
-    let Some(listed) = listed else { return report(&last(records, out), &args.out, out) };
+    let Some(listed) = listed else { return report(args, &last(records, out), out) };
     let wanted: BTreeSet<&str> = listed.iter().map(|run| run.key.as_str()).collect();
     let ours: Vec<Record> = records.into_iter().filter(|run| wanted.contains(run.key.as_str())).collect();
     let missing = listed.len() - doing::keys(&ours).len();
-    let status = report(&super::settle(ours, out), &args.out, out)?;
+    let status = report(args, &super::settle(ours, out), out)?;
     if missing == 0 {
         return Ok(status);
     }

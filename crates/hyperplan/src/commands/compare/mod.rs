@@ -1,6 +1,7 @@
 //! `hyperplan compare`: solvers and encodings over problems.
 
 mod benchexec;
+mod certified;
 mod cluster;
 mod comparison;
 mod doing;
@@ -28,7 +29,7 @@ pub(crate) fn run(args: &args::Compare, verbose: bool, out: &mut Output) -> Resu
     if !cluster.merge.is_empty() {
         return merge::run(args, out);
     }
-    let Some(comparison) = Comparison::new(args, out)? else { return again(&args.out, out) };
+    let Some(comparison) = Comparison::new(args, out)? else { return again(args, out) };
     if let Some(folder) = &args.benchexec {
         return benchexec::run(folder, &comparison, out);
     }
@@ -60,7 +61,7 @@ fn here(args: &args::Compare, runs: &[Run], verbose: bool, out: &mut Output) -> 
         args.out.join(LOG).display()
     );
     match all {
-        Ok(true) => report(&in_order(records, runs, out), &args.out, out),
+        Ok(true) => report(args, &in_order(records, runs, out), out),
         Ok(false) => {
             out.error(format_args!("interrupted: {kept}"));
             Ok(Exit::Undecided)
@@ -102,7 +103,8 @@ fn settle(records: Vec<Record>, out: &Output) -> Vec<Record> {
 }
 
 /// Reports what is in the log, without any run.
-fn again(folder: &Path, out: &mut Output) -> Result {
+fn again(args: &args::Compare, out: &mut Output) -> Result {
+    let folder = args.out.as_path();
     let path = folder.join(LOG);
     if !path.is_file() {
         return Err(Failure::input(format_args!(
@@ -111,7 +113,7 @@ fn again(folder: &Path, out: &mut Output) -> Result {
         )));
     }
     let (_log, records) = open(folder, out)?;
-    report(&last(records, out), folder, out)
+    report(args, &last(records, out), out)
 }
 
 /// The last of each where it was done again after a change.
@@ -137,7 +139,10 @@ fn place(record: &Record) -> impl Ord + use<> {
 }
 
 /// Prints what is wrong and the scores, and writes all reports.
-fn report(records: &[Record], folder: &Path, out: &mut Output) -> Result {
+fn report(args: &args::Compare, records: &[Record], out: &mut Output) -> Result {
+    let folder = args.out.as_path();
+    let believed = args.certified.then(|| certified::certified(records, out));
+    let records = believed.as_deref().unwrap_or(records);
     let processors: BTreeSet<&str> = records.iter().filter_map(|run| run.processor.as_deref()).collect();
     if processors.len() > 1 {
         let all: Vec<&str> = processors.into_iter().collect();

@@ -4,7 +4,9 @@ use super::emit::LARGEST;
 use super::{Note, Work};
 use crate::config;
 use crate::explain::Explain;
-use crate::failure::{self, Failure, Result};
+use crate::failure::{Exit, Failure, Result};
+use crate::files;
+use crate::proof::Made;
 use crate::store::write_whole;
 use hyperplan_family::{
     About, Case, Dropped, Entry, Horizon, Layout, Map, Objective, Record, body_of, sha256,
@@ -130,6 +132,10 @@ impl One<'_> {
         }
         let file = Layout::problem(&name);
         write_whole(self.work.folder, &file, text.as_bytes())?;
+        let mut certificate = match status {
+            Status::Unsat if self.work.certify => self.certificate(&problem)?,
+            _ => None,
+        };
         for (instance, encoding) in wanted {
             if self.deadline.passed() {
                 return Ok(false);
@@ -140,7 +146,7 @@ impl One<'_> {
             let (states, quantifiers) =
                 (config::states_name(encoding.states), encoding.quantifiers.to_string());
             let about = About { instance, case: self.case, horizon, steps, states, quantifiers };
-            self.benchmark(&problem, &file, encoding, status, about)?;
+            self.benchmark(&problem, &file, (encoding, status, certificate.as_mut()), about)?;
         }
         Ok(true)
     }
@@ -176,6 +182,19 @@ impl One<'_> {
         })
     }
 
+    /// The certificate of a problem without a strategy; none where it takes too long, or would be too large.
+    fn certificate(&self, problem: &Problem) -> Result<Option<Made>> {
+        let Some(objective) = problem.objective(self.case.objective.name()) else { return Ok(None) };
+        let made = Made::new((problem, objective), Vec::new(), &self.deadline.within(self.work.limit));
+        match made {
+            Ok(made) => Ok(Some(made)),
+            Err((status @ (Exit::Bug | Exit::Solver), why)) => {
+                Err(Failure::new(status, format_args!("{}: {why}", self.case)))
+            }
+            Err(_) => Ok(None),
+        }
+    }
+
     /// Whether the track has benchmarks of that status: an unsatisfiable one has no model, a satisfiable one no core.
     fn fits(&self, status: Status) -> bool {
         match self.work.common.track {
@@ -200,8 +219,7 @@ impl One<'_> {
         &self,
         problem: &Problem,
         file: &str,
-        encoding: Encoding,
-        status: Status,
+        (encoding, status, certificate): (Encoding, Status, Option<&mut Made>),
         about: About,
     ) -> Result<()> {
         let Some(objective) = problem.objective(self.case.objective.name()) else { return Ok(()) };
@@ -232,6 +250,12 @@ impl One<'_> {
         let (text, logic) = (text.0, emitted.logic);
         let path = self.work.layout.benchmark(self.folder(), &logic, &self.case, &about.instance);
         write_whole(self.work.folder, &path, &text)?;
+        let certified = certificate.is_some();
+        if let Some(made) = certificate {
+            let path = self.work.folder.join(&path);
+            made.of_benchmark(&text, files::relative(&path, &self.work.folder.join(file))?);
+            made.write(&path.with_extension(""))?;
+        }
         let entry = Entry {
             file: path,
             sha256: sha256(&text),
@@ -239,6 +263,7 @@ impl One<'_> {
             bytes: text.len() as u64,
             logic,
             status: status.text().to_owned(),
+            certified,
             problem: file.to_owned(),
             about,
         };
@@ -271,7 +296,7 @@ fn parsed(text: &str) -> Result<Problem> {
     let lowered = read(&mut sources, "problem.hp", text, &NoFiles, &Overrides::default());
     if lowered.has_errors() {
         let message = "this is a bug in hyperplan: a problem that it made has errors";
-        return Err(Failure { details: text.to_owned(), ..Failure::new(failure::Exit::Bug, message) });
+        return Err(Failure { details: text.to_owned(), ..Failure::new(Exit::Bug, message) });
     }
     Ok(lowered.problem)
 }

@@ -14,7 +14,7 @@ use crate::nusmv;
 use crate::output::Output;
 use crate::parameter::Searched;
 use crate::plans;
-use crate::proof::Prover;
+use crate::proof::{Prover, Said};
 use crate::report::{Picture, json, write_picture};
 use crate::waiting::Waiting;
 use crate::wish::Wish;
@@ -146,7 +146,9 @@ fn certify(
     let Some(folder) = &args.proof else { return Exit::Good };
     guard::doing("making certificates");
     let prover = Prover { folder, set: &args.problem.set, deadline: &config.plan.deadline };
-    match prover.prove(about, (outcome, answer.minimized.as_ref()), wish, out) {
+    let Answer { minimized, costs, .. } = &*answer;
+    let said = Said { verdict: outcome.verdict, minimized: minimized.as_ref(), costs };
+    match prover.prove(about, &said, wish, out) {
         Ok((made, status)) => {
             answer.certificates = made;
             status
