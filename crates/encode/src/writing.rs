@@ -8,7 +8,7 @@ use crate::value::Val;
 use derive_more::{From, Into};
 use hyperplan_problem::{ActionId, Expr, FormulaId, Leaf, PathId, PathLeaf, State, Trace};
 use hyperplan_relevance::Error;
-use hyperplan_relevance::{Belief, Goal, Instance, Known, Narrowing, Relevant};
+use hyperplan_relevance::{Belief, Cube, Goal, Instance, Known, Narrowing, Relevant};
 use hyperplan_smt::{Features, Model, Script, Term, Terms};
 use std::sync::Arc;
 use typed_index_collections::TiVec;
@@ -65,6 +65,15 @@ pub trait Writer: Send + Sync {
     /// # Errors
     /// [`Error::Interrupted`], and [`Error::TooLarge`] where too much can matter.
     fn least(&self, _: &Goal) -> Result<Option<i64>, Error> {
+        Ok(None)
+    }
+
+    /// So many cases of the leading block, or fewer, that together have all of its choices that matter; `None` where it is not known
+    /// how to tell.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`], and [`Error::TooLarge`] where too much can matter.
+    fn cubes(&self, _: &[PathId], _: &Goal, _: usize) -> Result<Option<Vec<Cube>>, Error> {
         Ok(None)
     }
 

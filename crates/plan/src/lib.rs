@@ -29,7 +29,7 @@ mod watch;
 
 pub use cheapest::{Cheapest, Value, cheapest};
 pub use config::{Config, Outcome, Quantifiers, Seconds, States, Verdict, Verified};
-pub use cubes::{Cube, cubes, within};
+pub use cubes::{Cube, cubes};
 pub use emit::{EmitConfig, Emitted, Status, Track, emit, strategy_of_model};
 pub use evidence::Evidence;
 pub use fact::{Because, Error, Fallen, Fault, Note, Reason, Unsupported, Worth, Wrong};
