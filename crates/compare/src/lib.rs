@@ -39,7 +39,7 @@ mod witness;
 pub mod work;
 
 pub use judge::{Claim, Fault, Finding, Judgement, Kind, judge};
-pub use lanes::{Finish, Lanes};
+pub use lanes::{Finish, Foreman, Lanes};
 pub use log::{Log, LogError, Past};
 pub use machine::{cores, processor};
 pub use pool::{Event, Setting, prepare, run_all, tidy};

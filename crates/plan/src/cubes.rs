@@ -11,7 +11,7 @@
 
 use crate::config::Config;
 use crate::fact::Error;
-use crate::prepare::is_existential;
+use crate::prepare::{decided, is_existential};
 use hyperplan_encode::{self as encode, Among, Encoder, Goal, Graphs};
 use hyperplan_horizon::horizons;
 use hyperplan_problem::{
@@ -56,6 +56,24 @@ pub fn cubes(
     }
     let actions = by_actions(problem, objective, number);
     Ok(if actions.len() > places.len() { actions } else { places })
+}
+
+/// The objective in one of so many cases, by its number from 0, and how to search then. Where there are fewer there is nothing in it.
+///
+/// # Errors
+/// Those of [`cubes`].
+pub fn case(
+    problem: &Problem,
+    objective: &Objective,
+    (index, number): (usize, usize),
+    config: &Config,
+) -> Result<(Objective, Config), Error> {
+    let all = cubes(problem, objective, number, config)?;
+    Ok(match (all.get(index), objective.paths.first()) {
+        (Some(cube), _) => cube.within(objective, config),
+        (None, Some(first)) => (decided(objective, first.quantifier), config.clone()),
+        (None, None) => (objective.clone(), config.clone()),
+    })
 }
 
 fn by_places(

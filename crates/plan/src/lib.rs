@@ -29,13 +29,13 @@ mod watch;
 
 pub use cheapest::{Cheapest, Value, cheapest};
 pub use config::{Config, Outcome, Quantifiers, Seconds, States, Verdict, Verified};
-pub use cubes::{Cube, cubes};
+pub use cubes::{Cube, case, cubes};
 pub use emit::{EmitConfig, Emitted, Status, Track, emit, strategy_of_model};
 pub use evidence::Evidence;
 pub use fact::{Because, Error, Fallen, Fault, Note, Reason, Unsupported, Worth, Wrong};
 pub use hyperplan_encode::{Error as EncodeError, Limits};
 pub use lint::{Budget, Lints, Uninspected, lint, lint_systems};
-pub use minimize::{Least, MinimizeError, ProblemOf, minimize};
+pub use minimize::{Least, MinimizeError, Narrowed, ProblemOf, SHARE, minimize, narrowed};
 pub use prove::{Proved, Unproved, prove};
 pub use solve::solve;
 pub use watch::{Stage, Standing, Watch};

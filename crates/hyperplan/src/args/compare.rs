@@ -1,6 +1,6 @@
 //! What may be typed behind `compare`.
 
-use super::{Reading, quantifiers, setting, states};
+use super::{Part, Reading, part, quantifiers, setting, states};
 use clap::{Args, Parser, ValueEnum};
 use hyperplan_problem::answer::{Quantifiers, States};
 use serde::{Deserialize, Serialize};
@@ -141,7 +141,7 @@ pub(crate) enum Engine {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shard {
     /// One of so many shares, from 0.
-    Share { index: usize, of: usize },
+    Share(Part),
     /// Whatever is left.
     Next,
 }
@@ -188,14 +188,7 @@ fn shard(text: &str) -> Result<Shard, String> {
     if text == "next" {
         return Ok(Shard::Next);
     }
-    let number = |text: &str| text.trim().parse::<usize>().ok();
-    match text.split_once('/').and_then(|(index, of)| number(index).zip(number(of))) {
-        Some((index, of)) if index >= 1 && index <= of && of <= MOST_SHARES => {
-            Ok(Shard::Share { index: index - 1, of })
-        }
-        Some(_) => Err(format!("expected a share from 1/N to N/N, with N at most {MOST_SHARES}")),
-        None => Err("expected a share, such as 1/4, or `next`".to_owned()),
-    }
+    part(text, MOST_SHARES).map(Shard::Share).map_err(|error| format!("{error}; or `next`"))
 }
 
 #[cfg(test)]
@@ -204,7 +197,7 @@ mod tests {
 
     #[test]
     fn shares_are_read() {
-        assert_eq!(shard("1/4"), Ok(Shard::Share { index: 0, of: 4 }));
+        assert_eq!(shard("1/4"), Ok(Shard::Share(Part { index: 0, of: 4 })));
         assert_eq!(shard("next"), Ok(Shard::Next));
         for wrong in ["", "0/4", "5/4", "1/0", "1", "a/b", "-1/4", "1/1000000"] {
             assert!(shard(wrong).is_err(), "{wrong}");
