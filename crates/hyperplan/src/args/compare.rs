@@ -11,8 +11,6 @@ use std::path::PathBuf;
 pub(crate) struct Compare {
     #[command(flatten)]
     pub(crate) asked: Asked,
-    #[command(flatten)]
-    pub(crate) reading: Reading,
     /// How many runs at a time; they slow each other down
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
     pub(crate) jobs: u16,
@@ -26,7 +24,7 @@ pub(crate) struct Compare {
     #[arg(long)]
     pub(crate) queries: bool,
     /// Runs nothing, but writes the same comparison of problem files for BenchExec
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["plan", "shard", "merge", "engine"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["plan", "shard", "merge", "engine", "cubes"])]
     pub(crate) benchexec: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) cluster: Cluster,
@@ -78,6 +76,18 @@ pub(crate) struct Asked {
     /// Leaves strategies unchecked
     #[arg(long)]
     pub(crate) no_verify: bool,
+    /// Cuts each objective into N cases, each a run of its own, on several machines perhaps; reports have what they come to together
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=10_000))]
+    #[serde(default = "one")]
+    pub(crate) cubes: u16,
+    /// A plan names the problems that came of them.
+    #[command(flatten)]
+    #[serde(skip)]
+    pub(crate) reading: Reading,
+}
+
+fn one() -> u16 {
+    1
 }
 
 impl Asked {
@@ -194,6 +204,7 @@ fn shard(text: &str) -> Result<Shard, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use clap::CommandFactory as _;
 
     #[test]
     fn shares_are_read() {
@@ -202,6 +213,55 @@ mod tests {
         for wrong in ["", "0/4", "5/4", "1/0", "1", "a/b", "-1/4", "1/1000000"] {
             assert!(shard(wrong).is_err(), "{wrong}");
         }
+    }
+
+    /// Where or how runs are done, which changes nothing of what they are. Every other option is part of what a plan says.
+    const ELSEWHERE: [&str; 15] = [
+        "jobs",
+        "pin",
+        "out",
+        "queries",
+        "benchexec",
+        "plan",
+        "shard",
+        "log",
+        "merge",
+        "echo",
+        "engine",
+        "tasks",
+        "exclusive",
+        "unshared",
+        "submit",
+    ];
+
+    /// Values of which one fits each option, and is not what it is without.
+    const VALUES: [&str; 8] = ["7", "a", "T=3", "cegis", "bitvec", "pes", "hyperqb1", "true"];
+
+    #[test]
+    fn every_option_that_shapes_a_run_is_part_of_a_plan() {
+        #[derive(Parser)]
+        struct All {
+            #[command(flatten)]
+            all: Compare,
+        }
+        let mut shaping = 0;
+        for option in All::command().get_arguments().filter_map(|argument| argument.get_long()) {
+            if ["help", "version"].contains(&option) || ELSEWHERE.contains(&option) {
+                continue;
+            }
+            let with = VALUES
+                .iter()
+                .map(|value| vec![format!("--{option}={value}")])
+                .chain([vec![format!("--{option}")]]);
+            let parsed = with.filter_map(|words| {
+                let needed = (option == "semantics").then(|| "--bound=3".to_owned());
+                All::try_parse_from(["".to_owned()].into_iter().chain(needed).chain(words)).ok()
+            });
+            let told: Vec<bool> = parsed.map(|All { all }| !all.asked.is_default()).collect();
+            assert!(told.contains(&true), "--{option} is not part of what is asked: {told:?}");
+            shaping += 1;
+        }
+        assert!(shaping > 10, "{shaping}");
     }
 
     #[test]
@@ -213,6 +273,7 @@ mod tests {
         }
         let said = |words: &[&str]| Said::try_parse_from(words).expect("they are options").asked.is_default();
         assert!(said(&[""]));
+        assert!(!said(&["", "--bound=5"]) && !said(&["", "--dialect=hyperqb1"]));
         assert!(!said(&["", "a.hp"]) && !said(&["", "--timeout=5"]) && !said(&["", "--seed=1"]));
     }
 }

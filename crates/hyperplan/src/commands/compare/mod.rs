@@ -17,7 +17,7 @@ use doing::{Doing, keys};
 use hyperplan_compare::merge::{Settled, settled};
 use hyperplan_compare::plan::Run;
 use hyperplan_compare::report::write_all;
-use hyperplan_compare::{Fault, Log, Past, Record, judge, summary, tidy};
+use hyperplan_compare::{Fault, Log, Past, Record, judge, summary, tidy, together};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -138,6 +138,7 @@ fn place(record: &Record) -> impl Ord + use<> {
 
 /// Prints what is wrong and the scores, and writes all reports.
 fn report(records: &[Record], folder: &Path, out: &mut Output) -> Result {
+    let records = &together(records.to_vec());
     let processors: BTreeSet<&str> = records.iter().filter_map(|run| run.processor.as_deref()).collect();
     if processors.len() > 1 {
         let all: Vec<&str> = processors.into_iter().collect();

@@ -284,7 +284,7 @@ mod tests {
     #[test]
     fn values_are_asked_at_growing_distances_and_then_in_between() {
         let mut board = Board::new(Kind::Ways, 2, Range { low: 0, high: 100, lasts: true });
-        let mut begin =
+        let begin =
             |board: &mut Board, number: usize| (0..number).filter_map(|_| board.next()).collect::<Vec<_>>();
         assert_eq!(begin(&mut board, 3), [(0, 0), (1, 0), (4, 0)]);
         board.told(1, Verdict::Unrealizable);
@@ -293,7 +293,7 @@ mod tests {
         board.told(2, Verdict::Realizable);
         assert!(!board.leaves_time(2));
         // What is left has two values, and then other ways.
-        assert_eq!(begin(&mut board, 5), [(3, 0), (2, 0), (2, 1), (3, 1)]);
+        assert_eq!(begin(&mut board, 5), [(2, 0), (3, 0), (2, 1), (3, 1)]);
         board.told(3, Verdict::Unknown);
         board.told(6, Verdict::Unrealizable);
         assert!(board.is_settled() && board.best() == Some(4));
