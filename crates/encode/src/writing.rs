@@ -8,7 +8,7 @@ use crate::value::Val;
 use derive_more::{From, Into};
 use hyperplan_problem::{ActionId, Expr, FormulaId, Leaf, PathId, PathLeaf, State, Trace};
 use hyperplan_relevance::Error;
-use hyperplan_relevance::{Belief, Cube, Goal, Instance, Known, Narrowing, Relevant};
+use hyperplan_relevance::{Belief, Case, Goal, Instance, Known, Narrowing, Relevant};
 use hyperplan_smt::{Features, Model, Script, Term, Terms};
 use std::sync::Arc;
 use typed_index_collections::TiVec;
@@ -68,13 +68,13 @@ pub trait Writer: Send + Sync {
         Ok(None)
     }
 
-    /// So many cases of the leading block, or fewer, that together have all of its choices that matter; `None` where it is not known
-    /// how to tell.
+    /// One of so many cases of the leading block, by its number from 0, that together have all of its choices that matter. By default it
+    /// is not known how to cut.
     ///
     /// # Errors
     /// [`Error::Interrupted`], and [`Error::TooLarge`] where too much can matter.
-    fn cubes(&self, _: &[PathId], _: &Goal, _: usize) -> Result<Option<Vec<Cube>>, Error> {
-        Ok(None)
+    fn case(&self, _: &[PathId], _: &Goal, _: (usize, usize)) -> Result<Case, Error> {
+        Ok(Case::Whole)
     }
 
     /// The paths of a query in which some are known, with what was found out about those of the leading block.

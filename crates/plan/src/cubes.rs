@@ -5,30 +5,52 @@
 //! decides, and else all cases have to be decided.
 //!
 //! Where states are written one by one, a case is where paths are at some times, chosen by lookahead, and the searches look at nothing else
-//! ([`hyperplan_encode::Cube`]). Where they are not, or where paths differ by their actions only, a case is what paths do first: every path
+//! ([`Case`]). Where they are not, or where paths differ by their actions only, a case is what paths do first: every path
 //! has taken exactly one action of its system at each time from 1 to its horizon, so the cases leave nothing out; no horizon
 //! grows by what a case says, as it says nothing of later times.
 
 use crate::config::Config;
 use crate::fact::Error;
 use crate::prepare::{decided, is_existential};
-use hyperplan_encode::{self as encode, Among, Encoder, Goal, Graphs};
+use hyperplan_encode::{self as encode, Among, Case, Encoder, Goal, Graphs};
 use hyperplan_horizon::horizons;
 use hyperplan_problem::{
     ActionId, Expr, Formula, FormulaId, Node, Objective, PathId, PathLeaf, Problem, Quantifier,
 };
 use std::collections::VecDeque;
 
-/// A case.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Cube(Kind);
-
-#[derive(Clone, Debug, PartialEq, Eq)]
-enum Kind {
-    /// Where paths are.
-    Places(encode::Cube),
-    /// What some paths do.
-    Actions(Vec<Taken>),
+/// The objective in one of so many cases, by its number from 0, and how to search then. The same arguments give the same case,
+/// whatever the deadline, unless it ends this; some cases may have nothing in them.
+///
+/// # Errors
+/// As of [`crate::solve()`].
+pub fn case(
+    problem: &Problem,
+    objective: &Objective,
+    (index, number): (usize, usize),
+    config: &Config,
+) -> Result<(Objective, Config), Error> {
+    let stop = || config.deadline.passed();
+    let encoder =
+        Encoder::sharing(problem, objective, config.states, config.limits, &stop, &Graphs::default())?;
+    let goal = Goal::new(&objective.formula, is_existential(objective));
+    let nothing = || objective.paths.first().map(|path| decided(objective, path.quantifier));
+    let own = match encoder.writer.case(&objective.leading_block(), &goal, (index, number)) {
+        Ok(Case::Of(cube)) => {
+            let among = Among { cube, ..config.among.clone() };
+            return Ok((objective.clone(), Config { among, ..config.clone() }));
+        }
+        Ok(Case::Empty) => nothing(),
+        // What is too large is searched by variables.
+        Ok(Case::Whole) | Err(encode::Error::TooLarge { .. }) => {
+            match by_actions(problem, objective, number).get(index) {
+                Some(taken) => Some(taking(objective, taken)),
+                None => nothing(),
+            }
+        }
+        Err(error) => return Err(error.into()),
+    };
+    Ok((own.unwrap_or_else(|| objective.clone()), config.clone()))
 }
 
 /// That a path has taken one of these actions at a time, which is one of its horizon.
@@ -39,67 +61,9 @@ struct Taken {
     actions: Vec<ActionId>,
 }
 
-/// Cases of an objective that together are all of it: so many, where it can be cut so often, at least one. The same
-/// arguments give the same cases, whatever the deadline, unless it ends this.
-///
-/// # Errors
-/// As of [`crate::solve()`].
-pub fn cubes(
-    problem: &Problem,
-    objective: &Objective,
-    number: usize,
-    config: &Config,
-) -> Result<Vec<Cube>, Error> {
-    let places = by_places(problem, objective, number, config)?;
-    if places.len() >= number {
-        return Ok(places);
-    }
-    let actions = by_actions(problem, objective, number);
-    Ok(if actions.len() > places.len() { actions } else { places })
-}
-
-/// The objective in one of so many cases, by its number from 0, and how to search then. Where there are fewer there is nothing in it.
-///
-/// # Errors
-/// Those of [`cubes`].
-pub fn case(
-    problem: &Problem,
-    objective: &Objective,
-    (index, number): (usize, usize),
-    config: &Config,
-) -> Result<(Objective, Config), Error> {
-    let all = cubes(problem, objective, number, config)?;
-    Ok(match (all.get(index), objective.paths.first()) {
-        (Some(cube), _) => cube.within(objective, config),
-        (None, Some(first)) => (decided(objective, first.quantifier), config.clone()),
-        (None, None) => (objective.clone(), config.clone()),
-    })
-}
-
-fn by_places(
-    problem: &Problem,
-    objective: &Objective,
-    number: usize,
-    config: &Config,
-) -> Result<Vec<Cube>, Error> {
-    let stop = || config.deadline.passed();
-    let encoder =
-        Encoder::sharing(problem, objective, config.states, config.limits, &stop, &Graphs::default())?;
-    let goal = Goal::new(&objective.formula, is_existential(objective));
-    match encoder.writer.cubes(&objective.leading_block(), &goal, number) {
-        Ok(cubes) => {
-            let cubes = cubes.unwrap_or_default();
-            Ok(cubes.into_iter().map(|cube| Cube(Kind::Places(cube))).collect())
-        }
-        // The search goes on by variables then.
-        Err(encode::Error::TooLarge { .. }) => Ok(Vec::new()),
-        Err(error) => Err(error.into()),
-    }
-}
-
 /// By the actions of the leading paths in the first step, then in the second, as far as need be: the first case that can be is cut in
 /// two, by the first actions of which it has several.
-fn by_actions(problem: &Problem, objective: &Objective, number: usize) -> Vec<Cube> {
+fn by_actions(problem: &Problem, objective: &Objective, number: usize) -> Vec<Vec<Taken>> {
     let horizons = horizons(objective);
     let leading = objective.leading_block();
     let longest = leading.iter().filter_map(|&path| horizons[path].steps).max().unwrap_or(0);
@@ -131,24 +95,9 @@ fn by_actions(problem: &Problem, objective: &Objective, number: usize) -> Vec<Cu
         cubes.extend([cube, other]);
     }
     let taken = |cube: Vec<Vec<ActionId>>| {
-        let steps = steps().zip(cube).map(|((time, path), actions)| Taken { time, path, actions });
-        Cube(Kind::Actions(steps.collect()))
+        steps().zip(cube).map(|((time, path), actions)| Taken { time, path, actions }).collect()
     };
     whole.into_iter().chain(cubes).map(taken).collect()
-}
-
-impl Cube {
-    /// The objective in this case, and how to search then.
-    #[must_use]
-    pub fn within(&self, objective: &Objective, config: &Config) -> (Objective, Config) {
-        match &self.0 {
-            Kind::Places(cube) => {
-                let among = Among { cube: cube.clone(), ..config.among.clone() };
-                (objective.clone(), Config { among, ..config.clone() })
-            }
-            Kind::Actions(taken) => (taking(objective, taken), config.clone()),
-        }
-    }
 }
 
 /// The objective of paths that have taken these actions.

@@ -18,8 +18,8 @@ use hyperplan_problem::{
 };
 use hyperplan_relevance::Error;
 use hyperplan_relevance::{
-    Arena, Belief, Cube, Game, Goal, Instance, Known, Layers, Move, Narrowing, Numbering, Relevance,
-    Relevant, Start, believe, cases, cubes, generalize, in_state, leading, least,
+    Arena, Belief, Case, Game, Goal, Instance, Known, Layers, Move, Narrowing, Numbering, Relevance,
+    Relevant, Start, believe, case, cases, generalize, in_state, leading, least,
 };
 use hyperplan_smt::{Model, Script, Term, Terms};
 use hyperplan_space::{Graph, Letter, Run, StateIx, eval};
@@ -102,8 +102,8 @@ impl Writer for Enumerated<'_> {
         least(&self.arena, goal).map(Some)
     }
 
-    fn cubes(&self, block: &[PathId], goal: &Goal, number: usize) -> Result<Option<Vec<Cube>>, Error> {
-        cubes(&self.arena, block, goal, number).map(Some)
+    fn case(&self, block: &[PathId], goal: &Goal, number: (usize, usize)) -> Result<Case, Error> {
+        case(&self.arena, block, goal, number)
     }
 
     fn believe(&self, block: &[PathId], goal: &Goal, budget: usize) -> Result<Belief<Vec<Known>>, Error> {

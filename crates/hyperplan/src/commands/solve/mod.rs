@@ -77,12 +77,7 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
         let own = own.or(open.undecided.as_ref()).map(|reason| Why::new(reason, explain));
         let why = own.as_ref().or_else(|| searched?.undecided.as_ref());
         let mut answer = answer(loaded, objective, &outcome, (searched, open.costs), why, total);
-        let case = |part: Part| Case {
-            index: part.index as u32 + 1,
-            of: part.of as u32,
-            decides: lanes::decides(objective),
-        };
-        answer.case = args.cube.map(case);
+        answer.case = args.cube.map(|part| case(part, objective));
         let about = (loaded, objective);
         let certified = certify(args, &config, (&mut answer, &outcome), &wish, about, out);
         worst = worst.max(certified);
@@ -117,6 +112,12 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
         worst = worst.max(failure.status);
     }
     Ok(worst)
+}
+
+/// What an answer says of the case that it is about.
+fn case(part: Part, objective: &Objective) -> Case {
+    let number = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
+    Case { index: number(part.index + 1), of: number(part.of), decides: lanes::decides(objective) }
 }
 
 /// As [`solve`], saying how far it is where that takes long.
