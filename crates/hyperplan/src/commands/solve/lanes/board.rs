@@ -227,7 +227,11 @@ mod tests {
             let threshold = low + random((high - low + 3) as u64) as i64;
             let holes = random(50);
             let is_realizable = |value: i64| {
-                if lasts { value >= threshold } else { value >= threshold && (value as u64 ^ holes) % 3 != 0 }
+                if lasts {
+                    value >= threshold
+                } else {
+                    value >= threshold && !(value as u64 ^ holes).is_multiple_of(3)
+                }
             };
             let kind = [
                 Kind::Ways,
