@@ -104,3 +104,56 @@ pub(super) fn cheapest<'a>(
     });
     Some((best, costs.collect()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn answer(costs: &[(i64, i64)]) -> Answer {
+        let cost = |(value, least): &(i64, i64)| json!({ "expression": "c", "value": value, "least": least });
+        let costs: Vec<_> = costs.iter().map(cost).collect();
+        serde_json::from_value(json!({
+            "file": "a.hp", "objective": "o", "verdict": "realizable", "reason": null, "horizon": {}, "witness": null,
+            "verified": null, "solver": { "name": "builtin", "version": "" }, "quantifiers": "cegis", "states": "onehot",
+            "iterations": 1, "seconds": { "read": 0.0, "encode": 0.0, "solve": 0.0, "verify": 0.0, "total": 0.0 },
+            "costs": costs,
+        }))
+        .expect("it is an answer")
+    }
+
+    /// What two costs of each case are, found and proved, as a search that may end anywhere knows them: what is said of all cases is
+    /// never more than the least there is, and all that there is to know where every case knows its own.
+    #[test]
+    fn nothing_is_below_what_is_said_to_be_least() {
+        for code in 0..3usize.pow(8) {
+            let digit = |at: u32| (code / 3usize.pow(at) % 3) as i64;
+            // By case what is least, and what is known.
+            let cases = [[digit(0), digit(1)], [digit(2), digit(3)]];
+            let known = [[digit(4), digit(5)], [digit(6), digit(7)]];
+            let of = |case: usize| {
+                let ([first, second], [more, less]) = (cases[case], known[case]);
+                match more {
+                    // All is known of the first, and something or all of the second.
+                    0 => [(first, first), (second + (less + 1) / 2, (second - less / 2).max(0))],
+                    // The first was not lowered to its least, and the second not looked at.
+                    _ => [(first + more - 1, (first - 1 - less).max(0)), (second + less, 0)],
+                }
+            };
+            let answers = [answer(&of(0)), answer(&of(1))];
+            let least = cases.iter().min().expect("there are two");
+            let all: Vec<&Answer> = answers.iter().collect();
+            let (best, costs) = cheapest(&all, None).expect("both are realizable");
+            let said = [costs[0].least, costs[1].least];
+            assert!(values(best) >= least.to_vec() && said[0] <= least[0], "{cases:?} {known:?}");
+            let exact = best.costs[0].value == least[0];
+            assert!(!exact || said[1] <= least[1], "{cases:?} {known:?}: {said:?}");
+            if answers.iter().all(is_whole) {
+                assert_eq!(said, *least);
+            }
+            // Something that nobody knows may have less.
+            let (_, open) = cheapest(&all[..1], Some(&[0, 0])).expect("one is realizable");
+            assert!(open.iter().all(|cost| cost.least == 0));
+        }
+    }
+}

@@ -25,6 +25,9 @@ pub(super) struct Range {
     pub(super) lasts: bool,
 }
 
+/// Where so many values could not be decided others are hardly easier.
+const MOST_OPEN: usize = 16;
+
 /// A value, and one of its ways or cases, from 0.
 pub(super) type Lane = (i64, usize);
 
@@ -181,6 +184,10 @@ impl Board {
     /// A value that was not begun: at growing distances while none is known to be realizable, then in the middle of the largest gap
     /// between those that are asked; one after the other where no value says anything of another.
     fn value(&self) -> Option<i64> {
+        let idle = |asked: &&Asked| asked.verdict.is_none() && asked.running == 0;
+        if self.asked.values().filter(idle).count() >= MOST_OPEN {
+            return None;
+        }
         let (Range { low, high, lasts }, bound) = (self.range, self.bound());
         let is_new = |value: &i64| !self.asked.contains_key(value);
         if !lasts {
@@ -301,6 +308,21 @@ mod tests {
         board.told(3, Verdict::Unknown);
         board.told(6, Verdict::Unrealizable);
         assert!(board.is_settled() && board.best() == Some(4));
+    }
+
+    /// A wide range of which nothing can be decided is given up.
+    #[test]
+    fn what_cannot_be_decided_is_not_asked_without_end() {
+        for lasts in [false, true] {
+            let range = Range { low: 0, high: 1 << 40, lasts };
+            let mut board = Board::new(Kind::Ways, 3, range);
+            let mut lanes = 0;
+            while board.next().is_some() {
+                board.told(lanes, Verdict::Unknown);
+                lanes += 1;
+            }
+            assert!(!board.is_settled() && lanes <= 3 * MOST_OPEN, "{lanes}");
+        }
     }
 
     #[test]

@@ -185,7 +185,10 @@ impl Foreman for Crew<'_> {
         let found = end.as_ref().ok().filter(|answer| is_whole(answer)).map(|answer| answer.verdict);
         self.board.told(finish.lane, found.unwrap_or(Verdict::Unknown));
         self.ended.push(Ended { lane: self.board.lane(finish.lane), end, said: finish.stderr });
-        if self.board.is_settled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        // What cannot be had for any value is not to be tried for all.
+        let hopeless =
+            self.ended.len() >= self.ways.len() && self.ended.iter().all(|ended| ended.end.is_err());
+        if hopeless || self.board.is_settled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
     fn moot(&mut self) -> Vec<usize> {
