@@ -28,19 +28,17 @@ pub fn case(
     goal: &Goal,
     (mut index, mut number): (usize, usize),
 ) -> Result<Case, Error> {
-    let mut piece = Piece::new(arena, block, goal, Cube::default())?;
+    let mut piece = Piece::whole(arena, block, goal)?;
     let mut is_whole = true;
     while number > 1 {
         arena.task.go_on()?;
-        let Some(halves) = piece.cut(arena, block) else {
+        let Some([near, far]) = piece.cut(arena, block) else {
             return Ok(match index {
                 _ if is_whole => Case::Whole,
                 0 => Case::Of(piece.cube),
                 _ => Case::Empty,
             });
         };
-        let [near, far] = halves.map(|half| Piece::new(arena, block, goal, half));
-        let (near, far) = (near?, far?);
         let (weight, all) = (near.weight() as u128, (near.weight() + far.weight()).max(1) as u128);
         let own = (number as u128 * weight / all).clamp(1, number as u128 - 1) as usize;
         (piece, index, number) =
@@ -62,10 +60,8 @@ fn weight(layers: &Layers) -> usize {
 }
 
 impl Piece {
-    fn new(arena: &Arena<'_>, block: &[PathId], goal: &Goal, cube: Cube) -> Result<Piece, Error> {
-        let arena = Arena { cube: cube.clone(), ..arena.clone() };
-        let nothing = Relevant::default();
-        let relevance = Relevance::new(&arena, vec![None; arena.graphs.len()], nothing);
+    fn whole(arena: &Arena<'_>, block: &[PathId], goal: &Goal) -> Result<Piece, Error> {
+        let relevance = Relevance::new(arena, vec![None; arena.graphs.len()], Relevant::default());
         let unpruned = Goal::nothing();
         let goal = if arena.task.limits.prune { goal } else { &unpruned };
         let layers = |&path: &PathId| {
@@ -73,48 +69,41 @@ impl Piece {
             found.map(|Explored { layers: [layers], .. }| layers)
         };
         let layers = block.iter().map(layers).collect::<Result<_, _>>()?;
-        Ok(Piece { cube, layers })
+        Ok(Piece { cube: Cube::default(), layers })
     }
 
     fn weight(&self) -> usize {
         self.layers.iter().map(weight).sum()
     }
 
-    /// The best cut, if there is one.
-    fn cut(&self, arena: &Arena<'_>, block: &[PathId]) -> Option<[Cube; 2]> {
-        let mut best: Option<(u128, [Cube; 2])> = None;
-        for (&path, layers) in block.iter().zip(&self.layers) {
+    /// The halves of the best cut, if there is one.
+    fn cut(&self, arena: &Arena<'_>, block: &[PathId]) -> Option<[Piece; 2]> {
+        let mut best: Option<(u128, [Piece; 2])> = None;
+        for (at, (&path, layers)) in block.iter().zip(&self.layers).enumerate() {
             let graph = &arena.graphs[path];
+            let around = Around::new(graph);
             let end = layers.at.len().saturating_sub(1);
             let mut times: Vec<usize> = (0..=PLACES).map(|place| place * end / PLACES).collect();
             times.dedup();
             for time in times.into_iter().filter(|&time| layers.at[time].len() > 1) {
-                let halves = halves(graph, &layers.at[time]);
-                let left = halves.each_ref().map(|half| weight(&through(graph, layers, time, half)));
-                let less = left.map(|left| (weight(layers) - left.min(weight(layers))) as u128 + 1);
+                let halves = around.halves(&layers.at[time]);
+                let left = halves.each_ref().map(|half| through(graph, layers, time, half));
+                let less = left.each_ref().map(|left| (weight(layers) - weight(left)) as u128 + 1);
                 let gain = less[0] * less[1];
                 if best.as_ref().is_none_or(|(most, _)| gain > *most) {
-                    let time = time as u32;
-                    best = Some((gain, halves.map(|half| self.cube.with(path, time, half))));
+                    let [near, far] = halves.map(|half| self.cube.with(path, time as u32, half));
+                    let [first, second] = left.map(|left| {
+                        let mut layers = self.layers.clone();
+                        layers[at] = left;
+                        layers
+                    });
+                    let halves = [Piece { cube: near, layers: first }, Piece { cube: far, layers: second }];
+                    best = Some((gain, halves));
                 }
             }
         }
         best.map(|(_, halves)| halves)
     }
-}
-
-/// Several states in two halves, by how far they are from one that is far from others, in steps either way.
-fn halves(graph: &Graph, states: &[StateIx]) -> [Vec<StateIx>; 2] {
-    let around = Around::new(graph);
-    let first = around.far(states[0]);
-    let corner = states.iter().copied().max_by_key(|&state| first[state as usize]).unwrap_or(states[0]);
-    let far = around.far(corner);
-    let mut near = states.to_vec();
-    near.sort_unstable_by_key(|&state| (far[state as usize], state));
-    let mut rest = near.split_off(states.len() / 2);
-    near.sort_unstable();
-    rest.sort_unstable();
-    [near, rest]
 }
 
 /// The edges of a graph, either way.
@@ -130,6 +119,19 @@ impl<'g> Around<'g> {
         let edges = (0..graph.len() as StateIx).flat_map(of);
         let (starts, sources) = sources(graph.len(), edges);
         Around { graph, starts, sources }
+    }
+
+    /// Several states in two halves, by how far they are from one that is far from others.
+    fn halves(&self, states: &[StateIx]) -> [Vec<StateIx>; 2] {
+        let first = self.far(states[0]);
+        let corner = states.iter().copied().max_by_key(|&state| first[state as usize]).unwrap_or(states[0]);
+        let far = self.far(corner);
+        let mut near = states.to_vec();
+        near.sort_unstable_by_key(|&state| (far[state as usize], state));
+        let mut rest = near.split_off(states.len() / 2);
+        near.sort_unstable();
+        rest.sort_unstable();
+        [near, rest]
     }
 
     /// How many edges each state is from one.
