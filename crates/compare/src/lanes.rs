@@ -1,10 +1,11 @@
 //! Runs of hyperplan side by side, each with all that it starts below a process that ends it: not to be measured, but for the
 //! first that is good enough.
 
+use std::collections::BTreeMap;
 use std::io;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::Arc;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
@@ -29,10 +30,29 @@ pub struct Lanes {
     pub at_a_time: usize,
 }
 
+/// Who says what is run, one lane after the other.
+pub trait Foreman {
+    /// What ends all.
+    type End;
+
+    /// The arguments of the next lane; lanes are numbered from 0 as they are given. `None` where there is none, until another one
+    /// has ended.
+    fn next(&mut self) -> Option<Vec<String>>;
+
+    /// Hears of a lane that has ended.
+    fn ended(&mut self, finish: Finish) -> ControlFlow<Self::End>;
+
+    /// The lanes that are of no use any more, of those that run.
+    fn moot(&mut self) -> Vec<usize>;
+
+    /// Whether all are to end.
+    fn over(&mut self) -> bool;
+}
+
 /// What came of a lane.
 #[derive(Clone, Debug)]
 pub struct Finish {
-    /// Its place among all.
+    /// Its number.
     pub lane: usize,
     /// What it printed.
     pub stdout: String,
@@ -43,52 +63,56 @@ pub struct Finish {
 }
 
 impl Lanes {
-    /// Runs hyperplan with each of the arguments, in this order, and tells of each that ends, until that breaks, or
-    /// `over` says so: then all others end at once, with everything that they have started.
+    /// Runs hyperplan as the foreman says, and tells it of each lane that ends, until that breaks, it says that all is over, or
+    /// nothing runs any more: then all others end at once, with everything that they have started.
     ///
     /// # Errors
     /// When our own program cannot be started.
-    pub fn run<B>(
-        &self,
-        lanes: &[Vec<String>],
-        over: impl Fn() -> bool,
-        mut tell: impl FnMut(Finish) -> ControlFlow<B>,
-    ) -> io::Result<Option<B>> {
-        let next = AtomicUsize::new(0);
-        let lifelines = Lifelines::default();
+    pub fn run<F: Foreman>(&self, foreman: &mut F) -> io::Result<Option<F::End>> {
         let (sender, finishes) = mpsc::channel();
         thread::scope(|scope| {
-            for _ in 0..self.at_a_time.clamp(1, lanes.len().max(1)) {
-                let (sender, next, lifelines) = (sender.clone(), &next, &lifelines);
-                scope.spawn(move || {
-                    while !lifelines.are_cut() {
-                        let lane = next.fetch_add(1, Ordering::Relaxed);
-                        let Some(arguments) = lanes.get(lane) else { return };
-                        let measured =
-                            measure(&self.job(arguments), &self.hyperplan, &self.supervisor, lifelines);
-                        // Nobody listens any more where that fails.
-                        let _ = sender.send(measured.map(|measured| (lane, measured)));
-                    }
-                });
-            }
-            drop(sender);
+            let mut running: BTreeMap<usize, Arc<Lifelines>> = BTreeMap::new();
+            let mut begun = 0;
             let outcome = loop {
-                match finishes.recv_timeout(TICK) {
-                    Ok(Ok((lane, Some(measured)))) => {
-                        if let ControlFlow::Break(found) = tell(finish(lane, measured)) {
-                            break Ok(Some(found));
-                        }
-                    }
-                    Ok(Ok((_, None))) => {}
-                    Ok(Err(error)) => break Err(error),
-                    Err(RecvTimeoutError::Timeout) => {}
-                    Err(RecvTimeoutError::Disconnected) => break Ok(None),
+                while running.len() < self.at_a_time.max(1) {
+                    let Some(arguments) = foreman.next() else { break };
+                    let (lane, job, lifelines) = (begun, self.job(&arguments), Arc::<Lifelines>::default());
+                    begun += 1;
+                    running.insert(lane, Arc::clone(&lifelines));
+                    let sender = sender.clone();
+                    scope.spawn(move || {
+                        let measured = measure(&job, &self.hyperplan, &self.supervisor, &lifelines);
+                        // Nobody listens any more where that fails.
+                        let _ = sender.send((lane, measured));
+                    });
                 }
-                if over() {
+                if running.is_empty() {
                     break Ok(None);
                 }
+                match finishes.recv_timeout(TICK) {
+                    Ok((lane, measured)) => {
+                        running.remove(&lane);
+                        match measured {
+                            Err(error) => break Err(error),
+                            // It was of no use any more.
+                            Ok(None) => {}
+                            Ok(Some(measured)) => {
+                                if let ControlFlow::Break(end) = foreman.ended(finish(lane, measured)) {
+                                    break Ok(Some(end));
+                                }
+                            }
+                        }
+                    }
+                    Err(RecvTimeoutError::Timeout) => {}
+                    // We have a sender ourselves.
+                    Err(RecvTimeoutError::Disconnected) => break Ok(None),
+                }
+                if foreman.over() {
+                    break Ok(None);
+                }
+                foreman.moot().iter().filter_map(|lane| running.get(lane)).for_each(|line| line.cut());
             };
-            lifelines.cut();
+            running.values().for_each(|line| line.cut());
             outcome
         })
     }

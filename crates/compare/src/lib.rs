@@ -8,6 +8,7 @@
 //! makes one of their logs.
 
 pub mod benchexec;
+mod cases;
 pub mod contest;
 mod folders;
 mod heard;
@@ -38,8 +39,9 @@ mod tree;
 mod witness;
 pub mod work;
 
+pub use cases::together;
 pub use judge::{Claim, Fault, Finding, Judgement, Kind, judge};
-pub use lanes::{Finish, Lanes};
+pub use lanes::{Finish, Foreman, Lanes};
 pub use log::{Log, LogError, Past};
 pub use machine::{cores, processor};
 pub use pool::{Event, Setting, prepare, run_all, tidy};

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use hyperplan_solver::Standalone;
 use sha2::{Digest as _, Sha256};
 
+use crate::cases::{case, option};
 use crate::query::Query;
 use crate::record::{Answer, Limit};
 use hyperplan_outlet::one_line;
@@ -72,6 +73,8 @@ pub struct Ways {
     pub limit: Limit,
     /// Further options of `solve`.
     pub options: Vec<String>,
+    /// The cases of each objective, each a run by itself; one is all of it.
+    pub cases: u16,
     /// Tells builds of hyperplan apart, which does the runs on problem files.
     pub build: String,
 }
@@ -103,7 +106,10 @@ pub struct Run {
 #[must_use]
 pub fn count(instances: &[Arc<Instance>], solvers: &[Arc<Candidate>], ways: &Ways) -> u64 {
     let pairs = instances.iter().flat_map(|instance| solvers.iter().map(move |solver| (instance, solver)));
-    let each: usize = pairs.map(|(instance, solver)| encodings(instance, solver, ways).len()).sum();
+    let runs = |(instance, solver): (&Arc<Instance>, &Arc<Candidate>)| {
+        encodings(instance, solver, ways).len() * cases(instance, ways).len()
+    };
+    let each: usize = pairs.map(runs).sum();
     (each as u64).saturating_mul(ways.seeds.len() as u64).saturating_mul(ways.repetitions.into())
 }
 
@@ -117,26 +123,39 @@ pub fn plan(instances: &[Arc<Instance>], solvers: &[Arc<Candidate>], ways: &Ways
             for instance in instances {
                 for solver in solvers {
                     for (quantifiers, states) in encodings(instance, solver, ways) {
-                        let problem = matches!(instance.kind, Kind::Problem { .. });
-                        let mut run = Run {
-                            key: String::new(),
-                            instance: Arc::clone(instance),
-                            solver: Arc::clone(solver),
-                            quantifiers,
-                            states,
-                            options: if problem { ways.options.clone() } else { Vec::new() },
-                            seed,
-                            repetition,
-                            limit: ways.limit,
-                        };
-                        run.key = run.digest(&ways.build);
-                        runs.push(run);
+                        for options in cases(instance, ways) {
+                            let mut run = Run {
+                                key: String::new(),
+                                instance: Arc::clone(instance),
+                                solver: Arc::clone(solver),
+                                quantifiers: quantifiers.clone(),
+                                states: states.clone(),
+                                options,
+                                seed,
+                                repetition,
+                                limit: ways.limit,
+                            };
+                            run.key = run.digest(&ways.build);
+                            runs.push(run);
+                        }
                     }
                 }
             }
         }
     }
     runs
+}
+
+/// The further options of each case.
+fn cases(instance: &Instance, ways: &Ways) -> Vec<Vec<String>> {
+    let with = |index: u16| {
+        let case = (ways.cases > 1).then(|| option(index, ways.cases));
+        ways.options.iter().cloned().chain(case).collect()
+    };
+    match instance.kind {
+        Kind::Query(_) => vec![Vec::new()],
+        Kind::Problem { .. } => (1..=ways.cases.max(1)).map(with).collect(),
+    }
 }
 
 fn encodings(instance: &Instance, solver: &Candidate, ways: &Ways) -> Vec<(Option<String>, Option<String>)> {
@@ -189,6 +208,9 @@ impl Run {
         if self.seed != 0 {
             words.push(format!("seed {}", self.seed));
         }
+        words.extend(
+            self.options.iter().find_map(|word| case(word)).map(|(index, of)| format!("case {index}/{of}")),
+        );
         if self.repetition != 0 {
             words.push(format!("repetition {}", self.repetition));
         }
@@ -233,6 +255,7 @@ mod tests {
             repetitions: 2,
             limit: Limit::default(),
             options: Vec::new(),
+            cases: 1,
             build: "one".to_owned(),
         }
     }
@@ -255,6 +278,20 @@ mod tests {
         assert_eq!(keys.len(), runs.len());
         assert_eq!(runs[0].label(), "a.hp#sp builtin keep/onehot");
         assert_eq!(runs.last().expect("there are some").repetition, 1);
+    }
+
+    #[test]
+    fn each_case_of_an_objective_is_a_run() {
+        let problem = instance("a.hp#sp", Kind::Problem { objective: "sp".to_owned() });
+        let instances = [problem, instance("a.smt2", Kind::Query(Query::default()))];
+        let ways = Ways { cases: 3, ..ways() };
+        let runs = plan(&instances, &[candidate("builtin")], &ways);
+        assert_eq!(runs.len(), 3 * (2 * 3) * 2 * 2);
+        assert_eq!(count(&instances, &[candidate("builtin")], &ways), runs.len() as u64);
+        let keys: BTreeSet<&str> = runs.iter().map(|run| run.key.as_str()).collect();
+        assert_eq!(keys.len(), runs.len());
+        assert_eq!(runs[1].options, ["--cube=2/3"]);
+        assert_eq!(runs[1].label(), "a.hp#sp builtin keep/onehot case 2/3");
     }
 
     #[test]
@@ -286,8 +323,9 @@ mod tests {
             run(&|_, _, w| w.limit.memory_mib = Some(1)),
             run(&|_, _, w| w.options = vec!["--no-verify".to_owned()]),
             run(&|_, _, w| w.build = "another".to_owned()),
+            run(&|_, _, w| w.cases = 2),
         ]);
-        assert_eq!(keys.len(), 11);
+        assert_eq!(keys.len(), 12);
         // The family is for tables only.
         assert!(!keys.insert(run(&|i, _, _| i.family = "x".to_owned())));
     }

@@ -392,6 +392,7 @@ fn record(run: &Run, setting: &Setting, measured: &Measured, folders: &Folders) 
         reason_code: reading.reason_code,
         processor: setting.processor.clone(),
         ended_ms: now_ms(),
+        case: reading.case,
     }
 }
 

@@ -1,6 +1,6 @@
 //! What a run's output means.
 
-use hyperplan_problem::answer::{self, Failed, ReasonCode, Verdict};
+use hyperplan_problem::answer::{self, Case, Failed, ReasonCode, Verdict};
 use serde::de::DeserializeOwned;
 
 use crate::heard::Heard;
@@ -29,6 +29,7 @@ pub(crate) struct Reading {
     pub(crate) rounds: Option<u64>,
     pub(crate) reason_code: Option<ReasonCode>,
     pub(crate) message: Option<String>,
+    pub(crate) case: Option<Case>,
 }
 
 impl Reading {
@@ -95,6 +96,7 @@ pub(crate) fn of_problem(measured: &Measured, over: bool) -> Reading {
         logic: said.logic,
         solver_s: Some(said.seconds.solve),
         rounds: Some(u64::from(said.iterations)),
+        case: said.case,
         ..reading
     }
 }

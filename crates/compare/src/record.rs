@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::fmt;
 
-use hyperplan_problem::answer::ReasonCode;
+use hyperplan_problem::answer::{Case, ReasonCode};
 use serde::{Deserialize, Serialize};
 
 use hyperplan_outlet::one_line;
@@ -147,6 +147,9 @@ pub struct Record {
     /// When it ended, in milliseconds since 1970.
     #[serde(default)]
     pub ended_ms: Option<u64>,
+    /// The case of the objective that it was about, where it got so far as to say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub case: Option<Case>,
 }
 
 /// What became of a witness, in words, from how a record says that it was checked.
@@ -202,6 +205,7 @@ pub(crate) mod tests {
             reason_code: None,
             processor: None,
             ended_ms: None,
+            case: None,
         }
     }
 

@@ -157,6 +157,11 @@ pub fn failures(job: &str) -> Vec<String> {
         Ok(said) if !said.trim().is_empty() => said,
         _ => heard("squeue", &mut queue).unwrap_or_default(),
     };
+    ended_badly(&said)
+}
+
+/// The tasks that did not end well, of `sacct` or `squeue`: task, state and node.
+fn ended_badly(said: &str) -> Vec<String> {
     let mut failures = Vec::new();
     for line in said.lines() {
         if let [task, state, node] = line.trim().split('|').collect::<Vec<_>>()[..]
@@ -221,6 +226,18 @@ mod tests {
         let plain = Order { memory_mib: None, exclusive: false, ..order }.script();
         assert!(!plain.contains("--mem") && !plain.contains("--exclusive"), "{plain}");
         assert!(plain.starts_with("#!/bin/sh\n") && plain.ends_with("\ntrue\n"), "{plain}");
+    }
+
+    /// As Slurm 22.05 prints them, with accounting and without.
+    #[test]
+    fn what_ended_badly_is_told() {
+        let accounting = "7_1|COMPLETED|node1\n7_2|NODE_FAIL|node2\n7_3|OUT_OF_MEMORY|node1\n7_[4-9]|PENDING|None assigned\n";
+        assert_eq!(
+            ended_badly(accounting),
+            ["task 7_2 on node2: node fail", "task 7_3 on node1: out of memory"]
+        );
+        assert_eq!(ended_badly("7_1|TIMEOUT|node1\n7_2|RUNNING|node2\n"), ["task 7_1 on node1: timeout"]);
+        assert!(ended_badly("Slurm accounting storage is disabled\n").is_empty());
     }
 
     #[test]

@@ -215,7 +215,8 @@ mod tests {
         property(12, 200, |random| {
             let top = tempfile::tempdir().expect("a temporary folder");
             let folder = top.path().join("work");
-            let (pieces, patience) = (1 + random.below(6), Duration::from_millis(40));
+            // Long enough that whoever lives is heard of on a machine with other things to do.
+            let (pieces, patience) = (1 + random.below(6), Duration::from_millis(120));
             let open = |who: &str| Work::open(&folder, pieces, who, patience).expect("the folder is ours");
             let workers = ["a", "b.c", "d/e"].map(open);
             let (mut held, mut done, mut lost) = (Vec::new(), BTreeSet::new(), BTreeSet::new());

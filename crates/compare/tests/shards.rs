@@ -189,6 +189,7 @@ fn what_is_known_of_a_run_says_how_long_it_takes() {
         seeds: vec![0, 1],
         repetitions: 1,
         limit: Limit { wall_s: Some(10.0), cpu_s: None, memory_mib: None },
+        cases: 1,
         options: Vec::new(),
         build: String::new(),
     };

@@ -5,7 +5,7 @@ use crate::variables::{ByVariable, Numbers};
 use crate::writing::Writer;
 use hyperplan_problem::answer::States;
 use hyperplan_problem::{Objective, PathId, Problem, Target};
-use hyperplan_relevance::{Arena, Ceiling, Error, Limits, Stop, Task};
+use hyperplan_relevance::{Arena, Ceiling, Cube, Error, Limits, Stop, Task};
 use hyperplan_space::{Graph, Graphs};
 use std::sync::Arc;
 use typed_index_collections::TiVec;
@@ -24,6 +24,15 @@ pub struct Encoder<'a> {
     graphs: TiVec<PathId, Option<Arc<Graph>>>,
     /// How states are written, and what comes of that.
     pub writer: Box<dyn Writer + 'a>,
+}
+
+/// The choices of the leading block that are looked at; all by default.
+#[derive(Clone, Debug, Default)]
+pub struct Among {
+    /// What targets over their costs are at most; for systems whose states are written one by one.
+    pub bounds: Vec<(Target, i64)>,
+    /// The case that they are in. Where states are not written one by one all cases are looked at.
+    pub cube: Cube,
 }
 
 impl<'a> Encoder<'a> {
@@ -54,24 +63,24 @@ impl<'a> Encoder<'a> {
         stop: Stop<'a>,
         graphs: &Graphs,
     ) -> Result<Self, Error> {
-        Encoder::below(problem, objective, wish, limits, stop, graphs, &[])
+        Encoder::among(problem, objective, wish, limits, stop, graphs, &Among::default())
     }
 
-    /// As [`Encoder::sharing`], of choices of the leading block under which targets are at most so large. Queries of the
-    /// leading block have to ask for that by [`Writing::afford`].
+    /// As [`Encoder::sharing`], of some choices of the leading block only. Queries of the leading block have to ask for
+    /// bounds by [`Writing::afford`].
     ///
     /// # Errors
-    /// Those of [`Encoder::new`], and [`Error::NotEnumerable`] where states are not written one by one.
+    /// Those of [`Encoder::new`], and [`Error::NotEnumerable`] where there are bounds, and states are not written one by one.
     ///
     /// [`Writing::afford`]: crate::Writing::afford
-    pub fn below(
+    pub fn among(
         problem: &'a Problem,
         objective: &'a Objective,
         wish: Option<States>,
         limits: Limits,
         stop: Stop<'a>,
         graphs: &Graphs,
-        bounds: &[(Target, i64)],
+        Among { bounds, cube }: &Among,
     ) -> Result<Self, Error> {
         let task = Task::new(problem, objective, limits, stop)?;
         let graphs = explore(&task, wish, graphs)?;
@@ -97,7 +106,7 @@ impl<'a> Encoder<'a> {
                     Ceiling::new(|path| task.system(path), &graphs, target, *most)
                 };
                 let ceilings = bounds.iter().map(ceiling).collect();
-                let arena = Arena { task: task.clone(), graphs, ceilings };
+                let arena = Arena { task: task.clone(), graphs, ceilings, cube: cube.clone() };
                 Box::new(Enumerated::new(arena, states == States::Enum))
             }
             (States::Onehot | States::Enum, None) => {

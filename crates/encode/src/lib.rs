@@ -26,9 +26,11 @@ mod value;
 mod variables;
 mod writing;
 
-pub use encoder::Encoder;
+pub use encoder::{Among, Encoder};
 pub use hyperplan_problem::answer::States;
-pub use hyperplan_relevance::{Belief, Error, Goal, Instance, Known, Limits, Narrowing, Relevant, Stop};
+pub use hyperplan_relevance::{
+    Belief, Case, Error, Goal, Instance, Known, Limits, Narrowing, Relevant, Stop,
+};
 pub use hyperplan_space::Graphs;
 pub use names::Copies;
 pub use query::Query;

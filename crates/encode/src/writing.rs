@@ -8,7 +8,7 @@ use crate::value::Val;
 use derive_more::{From, Into};
 use hyperplan_problem::{ActionId, Expr, FormulaId, Leaf, PathId, PathLeaf, State, Trace};
 use hyperplan_relevance::Error;
-use hyperplan_relevance::{Belief, Goal, Instance, Known, Narrowing, Relevant};
+use hyperplan_relevance::{Belief, Case, Goal, Instance, Known, Narrowing, Relevant};
 use hyperplan_smt::{Features, Model, Script, Term, Terms};
 use std::sync::Arc;
 use typed_index_collections::TiVec;
@@ -66,6 +66,15 @@ pub trait Writer: Send + Sync {
     /// [`Error::Interrupted`], and [`Error::TooLarge`] where too much can matter.
     fn least(&self, _: &Goal) -> Result<Option<i64>, Error> {
         Ok(None)
+    }
+
+    /// One of so many cases of the leading block, by its number from 0, that together have all of its choices that matter. By default it
+    /// is not known how to cut.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`], and [`Error::TooLarge`] where too much can matter.
+    fn case(&self, _: &[PathId], _: &Goal, _: (usize, usize)) -> Result<Case, Error> {
+        Ok(Case::Whole)
     }
 
     /// The paths of a query in which some are known, with what was found out about those of the leading block.

@@ -231,17 +231,21 @@ pub(crate) struct Solve {
     /// Prints the strategy unchecked
     #[arg(long)]
     pub(crate) no_verify: bool,
-    /// Searches in N ways at once, each in a process with these limits: modes of quantifiers, encodings, solvers, seeds, of which
-    /// only those vary that are not given; the first verified answer ends the others
+    /// Searches in N processes at once, each with these limits: with --minimize of a constant several of its values, and in several
+    /// ways, modes of quantifiers, encodings, solvers, seeds, of which only those vary that are not given; the first verified answer that decides
+    /// ends the others
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), conflicts_with = "cubes")]
     pub(crate) portfolio: Option<u16>,
-    /// Searches in at least N cases, by the first actions of the leading paths, each in a process with these limits, as many at
-    /// once as there are cores
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    /// Searches in N cases, by where the leading paths are on the way, or what they do first, each in a process with these limits, as many
+    /// at once as there are cores
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=10_000))]
     pub(crate) cubes: Option<u16>,
-    /// One of these cases: how a path begins, by the places of actions among those of its system.
-    #[arg(long, value_name = "PATH=PLACE,...", value_parser = path_of_actions, hide = true)]
-    pub(crate) cube: Vec<WitnessPath>,
+    /// Searches in the I-th of these N cases only: the objective is realizable if one case is (`forall`: if all are)
+    #[arg(long, value_name = "I/N", value_parser = case, conflicts_with_all = ["cubes", "portfolio", "proof"])]
+    pub(crate) cube: Option<Part>,
+    /// Leaves aside what the objective itself wants to be small.
+    #[arg(long, hide = true, conflicts_with = "minimize")]
+    pub(crate) own_minimize_aside: bool,
     /// Says on standard output too, in JSON, why an objective has no answer: for comparisons
     #[arg(long, hide = true)]
     pub(crate) failures: bool,
@@ -536,6 +540,30 @@ fn path_of_actions(text: &str) -> Result<WitnessPath, String> {
         some => some.split(',').map(|action| action.trim().to_owned()).collect(),
     };
     Ok(WitnessPath { path, system: String::new(), actions, states: Vec::new(), positions: None })
+}
+
+/// One of so many parts, from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Part {
+    pub(crate) index: usize,
+    pub(crate) of: usize,
+}
+
+/// One of at most so many parts, as it is written.
+fn part(text: &str, most: usize) -> Result<Part, String> {
+    let number = |text: &str| text.trim().parse::<usize>().ok();
+    match text.split_once('/').and_then(|(index, of)| number(index).zip(number(of))) {
+        Some((index, of)) if index >= 1 && index <= of && of <= most => Ok(Part { index: index - 1, of }),
+        Some(_) => Err(format!("expected one from 1/N to N/N, with N at most {most}")),
+        None => Err("expected one of several, such as 1/4".to_owned()),
+    }
+}
+
+/// More cases are hardly meant: each is a process.
+const MOST_CUBES: usize = 10_000;
+
+fn case(text: &str) -> Result<Part, String> {
+    part(text, MOST_CUBES)
 }
 
 /// The greatest number that a range may have, as in problem files; differences of two of them are numbers still.

@@ -11,7 +11,7 @@ use hyperplan_problem::lower::uses;
 use hyperplan_problem::{Lowered, Objective, Problem, Value};
 use hyperplan_syntax::{SourceMap, ast, parse, render};
 use std::ops::RangeInclusive;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// A file without errors in its syntax, and the values that its constant may take.
 pub(crate) struct Parameter<'a> {
@@ -115,6 +115,17 @@ impl<'a> Parameter<'a> {
             problem
         };
         let least = minimize(&objective.name, self.range.clone(), &mut problem, config)?;
+        Ok(self.told(base, least, time, explain))
+    }
+
+    /// What was found out of the least value, in so much time for reading the file.
+    pub(crate) fn told(
+        &self,
+        base: &Loaded,
+        least: Least,
+        time: Duration,
+        explain: Explain<'_>,
+    ) -> (plan::Outcome, Searched) {
         let undecided = least.undecided.as_ref().map(|reason| Why::new(reason, explain));
         let (below, words) = self.said(&least, undecided.as_ref());
         let minimized = Minimized {
@@ -125,7 +136,7 @@ impl<'a> Parameter<'a> {
         };
         let loaded =
             Loaded { file: base.file.clone(), problem: least.problem, sources: base.sources.clone(), time };
-        Ok((least.outcome, Searched { loaded, minimized, undecided, words }))
+        (least.outcome, Searched { loaded, minimized, undecided, words })
     }
 
     /// What is known of smaller values, and the whole result in words.

@@ -17,7 +17,7 @@ pub(crate) struct Others {
 }
 
 /// How formulas of other tools are read.
-#[derive(Clone, Debug, Args)]
+#[derive(Clone, Debug, Default, PartialEq, Args)]
 #[group(skip)]
 pub(crate) struct Reading {
     /// The number of steps of each path, for formulas of other tools: read `within K`

@@ -24,13 +24,13 @@ pub(crate) fn imported(args: &args::Compare, out: &Output) -> Result<Vec<String>
     let mut entries = Vec::new();
     let direct: Vec<PathBuf> =
         args.asked.files.iter().filter(|name| is_foreign(name)).map(PathBuf::from).collect();
-    if direct.is_empty() && args.reading.bound.is_some() {
+    if direct.is_empty() && args.asked.reading.bound.is_some() {
         return Err(Failure::input(
             "--bound is for models and formulas on the command line; tables have bounds",
         ));
     }
     if !direct.is_empty() {
-        entries.push(Entry { family: None, files: direct, options: options(&args.reading)? });
+        entries.push(Entry { family: None, files: direct, options: options(&args.asked.reading)? });
     }
     for table in args.asked.files.iter().filter(|name| is_table(name)) {
         entries.extend(Entry::of_table(Path::new(table), args)?);
@@ -101,7 +101,8 @@ impl Entry {
                 })?),
             };
             let family = Some(family.to_owned()).filter(|family| !family.is_empty());
-            let options = Options { bound: Some(bound), semantics, dialect: args.reading.dialect, status };
+            let options =
+                Options { bound: Some(bound), semantics, dialect: args.asked.reading.dialect, status };
             Ok(Entry { family, files, options })
         };
         rows.map(entry).collect()

@@ -14,6 +14,8 @@ use std::time::Instant;
 pub(crate) enum Wish<'a> {
     /// What the objective says.
     OfObjective,
+    /// Nothing.
+    Nothing,
     /// A constant.
     Constant(Box<Parameter<'a>>),
     /// Costs, with the constants of the file.
@@ -29,6 +31,9 @@ impl<'a> Wish<'a> {
     /// What the arguments ask for, and the problem.
     pub(crate) fn read(args: &'a args::Solve, out: &Output) -> Result<(Wish<'a>, Loaded)> {
         let text = match &args.minimize {
+            None if args.own_minimize_aside => {
+                return Ok((Wish::Nothing, Loaded::read(&args.problem, out)?));
+            }
             None => return Ok((Wish::OfObjective, Loaded::read(&args.problem, out)?)),
             Some(args::Wish::Constant(wanted)) => {
                 let (parameter, loaded) = Parameter::read(&args.problem, wanted, out)?;
@@ -57,7 +62,7 @@ impl<'a> Wish<'a> {
     pub(crate) fn targets(&self, loaded: &Loaded, objective: &Objective) -> Result<Vec<Target>> {
         match self {
             Wish::OfObjective => Ok(objective.minimize.clone()),
-            Wish::Constant(_) => Ok(Vec::new()),
+            Wish::Nothing | Wish::Constant(_) => Ok(Vec::new()),
             Wish::Costs { exprs, consts, sources } => {
                 targets(&loaded.problem, objective, consts, exprs).map_err(|errors| failure(sources, &errors))
             }

@@ -6,7 +6,7 @@ mod common;
 use common::compare::Comparison;
 use common::fakes::Fake;
 use common::{Run, command, specs, text};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -158,6 +158,143 @@ fn what_has_changed_since_the_plan_is_not_run() {
     let run = comparison.run(&["--shard=1/2"]);
     assert_eq!(run.status, 2);
     assert!(run.stderr.contains("name files to run, or a plan"), "{}", run.stderr);
+}
+
+/// What is asked for is what the plan lists, whatever the option.
+#[test]
+fn every_option_changes_what_is_listed() {
+    let comparison = Comparison::new();
+    let rooms = specs().join("rooms.hp");
+    let plan = comparison.folder().join("plan.jsonl");
+    let plan_option = format!("--plan={}", plan.display());
+    let keys = |more: &[&str]| {
+        let what = [text(&rooms), "--solver=builtin", &plan_option];
+        good(comparison.run(&[&what[..], more].concat()));
+        let lines = fs::read_to_string(&plan).expect("it was written");
+        let key =
+            |line: &str| serde_json::from_str::<serde_json::Value>(line).expect("JSON")["key"].to_string();
+        lines.lines().skip(1).map(key).collect::<BTreeSet<String>>()
+    };
+    let usual = keys(&["--objective=sp"]);
+    assert_eq!(usual.len(), 1);
+    for option in [
+        "--objective=iso",
+        "--quantifiers=cegis",
+        "--states=bitvec",
+        "--set=T=3",
+        "--seed=5",
+        "--repeat=2",
+        "--timeout=5",
+        "--cpu=5",
+        "--memory=1000",
+        "--no-verify",
+        "--cubes=3",
+    ] {
+        let objective = if option.starts_with("--objective") { None } else { Some("--objective=sp") };
+        let with = keys(&objective.into_iter().chain([option]).collect::<Vec<_>>());
+        assert!(!with.is_subset(&usual), "{option} changes nothing");
+    }
+    assert_eq!(keys(&["--objective=sp", "--cubes=3"]).len(), 3);
+    // Where the plan says it already, it is refused.
+    for option in ["--bound=5", "--dialect=hyperqb1", "--cubes=2"] {
+        let run = comparison.run(&[&plan_option, "--shard=1/1", option]);
+        assert_eq!(run.status, 2, "{option}");
+        assert!(run.stderr.contains("says what is run, and how"), "{option}: {}", run.stderr);
+    }
+}
+
+/// The bound of models and formulas is in what a plan lists.
+#[test]
+fn bounds_are_part_of_a_plan() {
+    let comparison = Comparison::new();
+    let folder = comparison.folder().to_owned();
+    let model =
+        "MODULE main\nVAR x : 0..9;\nASSIGN init(x) := 0; next(x) := case x < 9 : x + 1; TRUE : x; esac;\n";
+    fs::write(folder.join("m.smv"), model).expect("the folder is ours");
+    fs::write(folder.join("f.hq"), "exists A. F (x[A] = 5)\n").expect("the folder is ours");
+    let [model, formula] = ["m.smv", "f.hq"].map(|name| folder.join(name));
+    let plan = folder.join("plan.jsonl");
+    let plan_option = format!("--plan={}", plan.display());
+    for (bound, status) in [("--bound=3", "unsat"), ("--bound=7", "sat")] {
+        let files = [text(&model), text(&formula), "--solver=builtin"];
+        good(comparison.run(&[&files[..], &[bound, &plan_option]].concat()));
+        good(comparison.run(&[&plan_option]));
+        let statuses = statuses(&comparison.out());
+        assert!(
+            statuses.len() == 1 && statuses.values().all(|found| found.contains(status)),
+            "{bound}: {statuses:?}"
+        );
+    }
+}
+
+/// Cases of an objective, anywhere, in any order, come to what the objective does.
+#[test]
+fn cases_are_runs_and_reported_together() {
+    let comparison = Comparison::new();
+    let rooms = specs().join("rooms.hp");
+    let what = [text(&rooms), "--objective=sp,iso,cso", "--solver=builtin", "--set=T=1,6"];
+    let plan = comparison.folder().join("plan.jsonl");
+    let plan_option = format!("--plan={}", plan.display());
+    good(comparison.run(&[&what[..], &["--cubes=4", &plan_option]].concat()));
+    let listed = fs::read_to_string(&plan).expect("it was written").lines().count();
+    assert_eq!(listed, 1 + 3 * 2 * 4);
+    for share in ["--shard=2/2", "--shard=1/2"] {
+        good(comparison.run(&[&plan_option, share]));
+    }
+    let whole = Comparison::new();
+    good(whole.run(&what));
+    let paths = logs(&comparison.out());
+    let paths: Vec<&str> = paths.iter().map(|path| text(path)).collect();
+    // With half of the cases something is open, and nothing is wrong.
+    let half = comparison.run(&[&[plan_option.as_str(), "--merge"], &paths[..1]].concat());
+    assert_eq!(half.status, 3, "{}", half.stderr);
+    good(comparison.run(&[&[plan_option.as_str(), "--merge"], &paths[..]].concat()));
+    let verdicts = |folder: &Path| -> BTreeMap<String, String> {
+        let first = |status: &String| status.split(' ').next().unwrap_or_default().to_owned();
+        statuses(folder).iter().map(|(about, status)| (about.clone(), first(status))).collect()
+    };
+    assert_eq!(verdicts(&comparison.out()), verdicts(&whole.out()));
+    let csv = fs::read_to_string(comparison.out().join("runs.csv")).expect("it was written");
+    assert!(csv.contains("--cubes=4") && !csv.contains("--cube="), "{csv}");
+}
+
+/// Each run is on a core of its own, with all that it starts.
+#[cfg(target_os = "linux")]
+#[test]
+fn pinned_runs_have_one_core_each() {
+    let comparison = Comparison::new();
+    let files = comparison.queries(6);
+    let allowed = comparison.folder().join("allowed");
+    let look = "grep Cpus_allowed_list /proc/self/status | cut -f2";
+    let body = format!(
+        "a=$({look})\nb=$(sh -c '{look}')\nstart=$(date +%s%N)\nsleep 0.3\necho $a $b $start $(date +%s%N) >> '{}'\n{ANSWER}",
+        allowed.display()
+    );
+    let fake = Fake::new(&body);
+    let cores = std::thread::available_parallelism().expect("there are some").get().min(2);
+    let jobs = format!("--jobs={cores}");
+    let run = |more: &[&str]| {
+        good(comparison.run(&[&[text(&files), &solver(&fake), &jobs, "--pin"][..], more].concat()))
+    };
+    run(&[]);
+    let seen = fs::read_to_string(&allowed).expect("it was written");
+    let runs: Vec<Vec<u64>> = seen
+        .lines()
+        .map(|line| line.split(' ').map(|word| word.parse().expect("one core, not a list")).collect())
+        .collect();
+    assert_eq!(runs.len(), 6);
+    for (at, one) in runs.iter().enumerate() {
+        let [core, inner, start, end] = one[..] else { panic!("{one:?}") };
+        assert_eq!(core, inner, "{seen}");
+        for other in &runs[..at] {
+            let together = other[2] < end && start < other[3];
+            assert!(!together || other[0] != core, "two at a time on one core: {seen}");
+        }
+    }
+    // More at a time than there are cores cannot be had.
+    let many = format!("--jobs={}", 60_000);
+    let refused = comparison.run(&[text(&files), &solver(&fake), &many, "--pin", "--seed=1"]);
+    assert!(refused.status == 2 && refused.stderr.contains("cores, and there are"), "{}", refused.stderr);
 }
 
 /// Waits until so many runs are in the logs of a folder.

@@ -71,7 +71,7 @@ fn cases_and_ways_decide_as_one_search_does() {
             assert_eq!(answer["horizon"], alone["horizon"], "{objective} {more}");
             assert_eq!(answer["witness"].is_null(), alone["witness"].is_null(), "{objective} {more}");
             assert_eq!(answer["verified"], alone["verified"], "{objective} {more}");
-            let told = ["the first of ", "found in a case of ", "so it is in all of "];
+            let told = ["the first of ", "it was found in case ", "it is so in all of "];
             assert!(told.iter().any(|words| said.contains(words)), "{objective} {more}: {said}");
         }
     }
@@ -90,6 +90,88 @@ fn what_was_found_is_printed_and_saved_as_always() {
     );
     let verified = hyperplan(&["verify", &file, text(&saved)]);
     assert_eq!(verified.status, 0, "{}", verified.stderr);
+}
+
+/// Each case alone is as the command with all of them has it, and says what it is about.
+#[test]
+fn cases_one_by_one_come_to_the_whole() {
+    let (_folder, file) = problem();
+    for (objective, expected) in VERDICTS.into_iter().filter(|(_, expected)| !expected.is_empty()) {
+        let mut verdicts = Vec::new();
+        for index in 1..=5 {
+            let case = format!("--cube={index}/5");
+            let run = hyperplan(&["solve", &file, "--objective", objective, &case, "--format=json"]);
+            let answer = run.json().remove(0);
+            assert_eq!((&answer["case"]["index"], &answer["case"]["of"]), (&index.into(), &5.into()));
+            let decides = answer["case"]["decides"].as_str().map(str::to_owned);
+            assert_eq!(
+                answer["witness"].is_null(),
+                decides.as_deref() != answer["verdict"].as_str(),
+                "{answer}"
+            );
+            verdicts.push((answer["verdict"].as_str().map(str::to_owned), decides));
+        }
+        let decided = verdicts.iter().any(|(verdict, decides)| verdict == decides);
+        let decides = verdicts[0].1.as_deref();
+        assert_eq!(decided, decides == Some(expected), "{objective}: {verdicts:?}");
+    }
+    let run = hyperplan(&["solve", &file, "--objective=not_there", "--cube=2/5"]);
+    assert!(run.status == 1 && run.stdout.contains("unrealizable in case 2 of 5"), "{}", run.stdout);
+}
+
+/// A constant and costs, over systems in which what is least can be told by hand.
+const LEAST: &str = "
+const T = 12;
+system Walk {
+  state x: 0..9;
+  init x == 0 | x == 2;
+  action up, jump, stay;
+  on up when x < 9 { x' = x + 1; }
+  on jump when x < 7 { x' = x + 3; }
+  on stay { }
+  cost fuel = if action == jump then 5 else if action == up then 2 else 0;
+}
+objective there { exists p. F[0,T] x[p] == 9 }
+objective there_at { exists p. F[T,T] x[p] == 9 & G[0,T] (x[p] < 9 | F[0,T] x[p] == 9) }
+objective never { exists p. F[0,T] x[p] == 9 & G[0,T] x[p] < 9 }
+objective ahead { exists p. forall q. F[0,T] x[p] == 9 & (x[q] == 0 -> G[0,2] x[q] <= x[p] + 6) }
+objective stays { forall p. G[0,T] x[p] < 9 | x[p] >= 0 & T > 4 }
+objective cheap { exists p. F[0,T] x[p] == 9 minimize cost fuel[p]; }
+objective cheap_two { exists p, q. F[0,T] x[p] == 9 & F[0,T] x[q] == 7 & x[p] == 0 minimize cost fuel[p] + cost fuel[q], cost fuel[q]; }
+";
+
+/// What is least, and that it is, does not depend on how many search.
+#[test]
+fn the_least_is_found_by_several_processes_too() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("least.hp");
+    std::fs::write(&file, LEAST).expect("the folder is ours");
+    let file = text(&file);
+    let mut wishes: Vec<Vec<&str>> = Vec::new();
+    for objective in ["there", "there_at", "never", "ahead", "stays"] {
+        wishes.push(vec![objective, "--minimize=T"]);
+        wishes.push(vec![objective, "--minimize=T=2..7"]);
+    }
+    wishes.push(vec!["cheap"]);
+    wishes.push(vec!["cheap_two"]);
+    wishes.push(vec!["cheap", "--minimize=T"]);
+    wishes.push(vec!["there", "--minimize=cost fuel[p]"]);
+    for wish in wishes {
+        let run = |more: &[&str]| {
+            let base = ["solve", file, "--format=json", "--objective"];
+            let run = hyperplan(&[&base[..], &wish, more].concat());
+            assert_eq!(run.json().len(), 1, "{wish:?} {more:?}: {}", run.stderr);
+            (run.status, run.json().remove(0), run.stderr)
+        };
+        let (status, alone, _) = run(&[]);
+        for more in ["--portfolio=3", "--cubes=2", "--cubes=5"] {
+            let (other, answer, said) = run(&[more]);
+            assert_eq!(other, status, "{wish:?} {more}: {said}");
+            for field in ["verdict", "minimized", "costs", "horizon", "verified"] {
+                assert_eq!(answer[field], alone[field], "{field} of {wish:?} {more}: {said}");
+            }
+        }
+    }
 }
 
 /// A way that hangs loses, and is ended with all that it started.
@@ -169,7 +251,11 @@ fn what_goes_wrong_in_all_is_told() {
     }
     for (arguments, words) in [
         (&["--cubes=2", "--portfolio=2"][..], "cannot be used with"),
-        (&["--cubes=2", "--minimize=T"], "--cubes cannot be used with --minimize"),
+        (&["--cubes=2", "--cube=1/2"], "cannot be used with"),
+        (&["--cube=1/2", "--minimize=T"], "--cube cannot be used with --minimize of a constant"),
+        (&["--cube=3/2"], "from 1/N to N/N"),
+        (&["--cube=1/2", "--proof=somewhere"], "cannot be used with"),
+        (&["--cubes=20000"], "20000 is not in"),
         (&["--portfolio=2", "--queries=somewhere"], "--portfolio cannot be used with --queries"),
         (&["--portfolio=2", "--solver=batsat,z3"], "not a race"),
         (&["--portfolio=0"], "0 is not in"),

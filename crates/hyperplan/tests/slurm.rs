@@ -218,6 +218,30 @@ fn runs_come_back_with_what_is_printed() {
     assert_eq!(run.status, 0, "{}", run.stderr);
 }
 
+/// Cases of hard problems are runs like others: what they come to together is what one machine finds.
+#[test]
+fn cases_are_spread_over_a_cluster() {
+    let Some(cluster) = Cluster::start() else { return };
+    let comparison = Comparison::new();
+    let what = ["rooms.hp", "--objective=sp,iso", "--solver=builtin", "--set=T=1,6"];
+    let mut command =
+        comparison.command(&[&what[..], &["--cubes=3", "--engine=slurm", "--tasks=4"]].concat());
+    cluster.here(&mut command);
+    let run = Run::new(command.output().expect("it was built"));
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    assert_eq!(comparison.log().lines().count(), 2 * 2 * 3);
+    let whole = Comparison::new();
+    assert_eq!(whole.run(&what).status, 0);
+    let verdicts = |folder: &Path| {
+        let text = fs::read_to_string(folder.join("runs.json")).expect("it was written");
+        let runs: Vec<serde_json::Value> = serde_json::from_str(&text).expect("it is JSON");
+        runs.iter()
+            .map(|run| format!("{} {} {}", run["instance"], run["set"], run["status"]))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(verdicts(&comparison.out()), verdicts(&whole.out()));
+}
+
 #[test]
 fn without_slurm_that_is_said() {
     let comparison = Comparison::new();

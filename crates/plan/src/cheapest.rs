@@ -10,7 +10,7 @@ use crate::config::{Config, Outcome, Quantifiers, Verdict};
 use crate::fact::{Error, Reason};
 use crate::minimize::{Spent, Steps};
 use crate::solve::solve_sharing;
-use hyperplan_encode::{self as encode, Encoder, Goal, Graphs};
+use hyperplan_encode::{self as encode, Among, Encoder, Goal, Graphs};
 use hyperplan_problem::{Mode, Objective, PathId, Problem, Strategy, Target, bounded, extended};
 use hyperplan_solver::Unknown;
 
@@ -169,10 +169,11 @@ impl Search<'_> {
             return Ok(None);
         }
         let bounds = self.bounds(at, best.values[at], best);
-        let Config { states, limits, deadline, .. } = self.config;
+        let Config { states, limits, deadline, among, .. } = self.config;
+        let among = Among { bounds, cube: among.cube.clone() };
         let stop = || deadline.passed();
         let (problem, objective) = (self.problem, self.objective);
-        let encoder = Encoder::below(problem, objective, *states, *limits, &stop, &self.graphs, &bounds);
+        let encoder = Encoder::among(problem, objective, *states, *limits, &stop, &self.graphs, &among);
         let goal = Goal::new(&objective.formula, true);
         match encoder.and_then(|encoder| encoder.writer.least(&goal)) {
             Ok(least) => Ok(least.map(|least| least.saturating_add(self.targets[at].constant))),
@@ -195,7 +196,8 @@ impl Search<'_> {
     fn below(&mut self, at: usize, bound: i64, best: &Best) -> Result<Outcome, Error> {
         let bounds = self.bounds(at, bound, best);
         if self.one_by_one {
-            let config = Config { bounds: bounds.clone(), ..self.config.clone() };
+            let among = Among { bounds: bounds.clone(), cube: self.config.among.cube.clone() };
+            let config = Config { among, ..self.config.clone() };
             match solve_sharing(self.problem, self.objective, &config, &self.graphs) {
                 Err(Error::Encode(encode::Error::TooLarge { .. } | encode::Error::NotEnumerable { .. })) => {
                     self.one_by_one = false;
@@ -204,8 +206,9 @@ impl Search<'_> {
             }
         }
         let (problem, objective) = bounded(self.problem, self.objective, &bounds, self.time);
-        // Systems that are bounded otherwise are others.
-        let mut outcome = solve_sharing(&problem, &objective, self.config, &Graphs::default())?;
+        // Systems that are bounded otherwise are others, with other states to choose a case by: all cases are looked at.
+        let config = Config { among: Among::default(), ..self.config.clone() };
+        let mut outcome = solve_sharing(&problem, &objective, &config, &Graphs::default())?;
         for trace in outcome.witness.iter_mut().flat_map(|strategy| &mut strategy.traces) {
             let width = self.problem.systems[self.objective.paths[trace.path].system].vars.len();
             for state in &mut trace.states {

@@ -2,9 +2,9 @@
 
 use crate::fact::{Because, Note, Reason};
 use crate::watch::Watch;
-use hyperplan_encode::Limits;
+use hyperplan_encode::{Among, Limits};
 pub use hyperplan_problem::answer::{Quantifiers, States, Verdict, Verified};
-use hyperplan_problem::{PathId, Strategy, Target};
+use hyperplan_problem::{PathId, Strategy};
 use hyperplan_solver::{Deadline, Identity, QuerySize, Spec};
 use std::path::PathBuf;
 use typed_index_collections::TiVec;
@@ -34,8 +34,8 @@ pub struct Config {
     pub queries: Option<PathBuf>,
     /// Budgets of the encoding.
     pub limits: Limits,
-    /// What targets over costs of the leading block may come to; for systems whose states are written one by one.
-    pub bounds: Vec<(Target, i64)>,
+    /// The choices of the leading block that are looked at.
+    pub among: Among,
     /// Where it is told how far the search is.
     pub watch: Watch,
 }
@@ -56,7 +56,7 @@ impl Config {
             memory_mib: None,
             queries: None,
             limits: Limits::default(),
-            bounds: Vec::new(),
+            among: Among::default(),
             watch: Watch::default(),
         }
     }

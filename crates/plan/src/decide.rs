@@ -284,7 +284,7 @@ impl<'s, 'a> Search<'s, 'a> {
     fn narrowings(&self) -> Vec<Narrowing> {
         let auto = self.config.quantifiers == Quantifiers::Auto;
         let alone = self.blocks.len() == 1;
-        if !self.config.bounds.is_empty() {
+        if !self.config.among.bounds.is_empty() {
             // Costs say which runs are long.
             let one_run = (auto && alone).then_some(Narrowing { slack: None, one_run: true });
             return one_run.into_iter().chain([Narrowing::default()]).collect();

@@ -3,8 +3,8 @@
 //! [`solve`] decides an objective: quantifiers are handed to the solver, expanded into finitely many cases, or
 //! decided by counterexamples; a strategy is verified by `hyperplan-verify`, which shares nothing with the encoding,
 //! before it is returned. [`minimize()`] finds the least value of a constant with which it can be had, [`cheapest()`] the
-//! strategy that costs least. [`cubes()`] cuts an objective
-//! into cases for searches side by side. [`emit`] gives the query as a benchmark instead. [`lint`] and [`lint_systems`] look for what is probably not meant.
+//! strategy that costs least. [`case()`] is one of several cases of an
+//! objective, for searches side by side. [`emit`] gives the query as a benchmark instead. [`lint`] and [`lint_systems`] look for what is probably not meant.
 
 mod cegis;
 mod cheapest;
@@ -29,13 +29,13 @@ mod watch;
 
 pub use cheapest::{Cheapest, Value, cheapest};
 pub use config::{Config, Outcome, Quantifiers, Seconds, States, Verdict, Verified};
-pub use cubes::{Cube, cubes, within};
+pub use cubes::case;
 pub use emit::{EmitConfig, Emitted, Status, Track, emit, strategy_of_model};
 pub use evidence::Evidence;
 pub use fact::{Because, Error, Fallen, Fault, Note, Reason, Unsupported, Worth, Wrong};
 pub use hyperplan_encode::{Error as EncodeError, Limits};
 pub use lint::{Budget, Lints, Uninspected, lint, lint_systems};
-pub use minimize::{Least, MinimizeError, ProblemOf, minimize};
+pub use minimize::{Least, MinimizeError, Narrowed, ProblemOf, SHARE, minimize, narrowed};
 pub use prove::{Proved, Unproved, prove};
 pub use solve::solve;
 pub use watch::{Stage, Standing, Watch};

@@ -28,7 +28,7 @@ use std::ops::RangeInclusive;
 use std::time::{Duration, Instant};
 
 /// What part of the time that is left a value may take, where larger ones can still be asked: one in so many.
-const SHARE: u32 = 4;
+pub const SHARE: u32 = 4;
 
 /// Values of a range whose last is asked for a guess, and the time for that.
 const NEAR: i64 = 256;
@@ -80,30 +80,44 @@ pub fn minimize<E>(
     problem_of: ProblemOf<'_, E>,
     config: &Config,
 ) -> Result<Least, MinimizeError<E>> {
-    let (low, high) = (*range.start(), *range.end().max(range.start()));
-    let problem = problem_of(low).map_err(MinimizeError::Problem)?;
-    let parts = conjuncts(&find(&problem, objective, low)?.formula);
-    let chain = Chain { end: low, whole: !parts.is_empty(), parts, problem };
-    let graphs = Graphs::default();
-    let mut minimizer = Minimizer {
-        objective,
-        problem_of,
-        config,
-        graphs,
-        chain,
-        first: low,
-        low,
-        high,
-        spent: Spent::default(),
-    };
+    let mut minimizer = Minimizer::new(objective, range, problem_of, config)?;
     let mut last = minimizer.last()?;
     if let Some(none) = last.take_if(|last| last.outcome.verdict == Verdict::Unrealizable) {
-        minimizer.low = high;
+        minimizer.low = minimizer.high;
         return Ok(minimizer.conclude(none, None));
     }
     let guess = last.as_ref().and_then(saved);
-    minimizer.refute(guess.map(|saved| high - saved))?;
+    minimizer.refute(guess.map(|saved| minimizer.high - saved))?;
     minimizer.run(last)
+}
+
+/// What is known of a range without asking for any of its values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Narrowed {
+    /// Smaller values are unrealizable; in the range.
+    pub low: i64,
+    /// Whether a value that is unrealizable says so of all smaller ones.
+    pub lasts: bool,
+}
+
+/// Values of a range up to which it is looked whether the objective lasts.
+const FAR: i64 = 1024;
+
+/// As much as the states that can matter show of a range, for those who ask for several of its values at once.
+///
+/// # Errors
+/// Those of the problems, for a value that is looked at, and where the first has no such objective.
+pub fn narrowed<E>(
+    objective: &str,
+    range: RangeInclusive<i64>,
+    problem_of: ProblemOf<'_, E>,
+    config: &Config,
+) -> Result<Narrowed, MinimizeError<E>> {
+    let mut minimizer = Minimizer::new(objective, range, problem_of, config)?;
+    minimizer.refute(None)?;
+    minimizer.follow(minimizer.high.min(minimizer.low.saturating_add(FAR)));
+    let Minimizer { low, high, chain, .. } = minimizer;
+    Ok(Narrowed { low, lasts: chain.whole && chain.end >= high })
 }
 
 fn find<'p, E>(problem: &'p Problem, name: &str, value: i64) -> Result<&'p Objective, MinimizeError<E>> {
@@ -188,7 +202,21 @@ impl Steps {
     }
 }
 
-impl<E> Minimizer<'_, E> {
+impl<'a, E> Minimizer<'a, E> {
+    fn new(
+        objective: &'a str,
+        range: RangeInclusive<i64>,
+        problem_of: ProblemOf<'a, E>,
+        config: &'a Config,
+    ) -> Result<Self, MinimizeError<E>> {
+        let (low, high) = (*range.start(), *range.end().max(range.start()));
+        let problem = problem_of(low).map_err(MinimizeError::Problem)?;
+        let parts = conjuncts(&find(&problem, objective, low)?.formula);
+        let chain = Chain { end: low, whole: !parts.is_empty(), parts, problem };
+        let (graphs, spent) = (Graphs::default(), Spent::default());
+        Ok(Minimizer { objective, problem_of, config, graphs, chain, first: low, low, high, spent })
+    }
+
     fn problem(&mut self, value: i64) -> Result<Problem, MinimizeError<E>> {
         (self.problem_of)(value).map_err(MinimizeError::Problem)
     }

@@ -24,7 +24,7 @@ pub(crate) fn search(
 ) -> Result<Outcome, Error> {
     match attempt(problem, objective, config, graphs) {
         Err(Error::Encode(error @ encode::Error::TooLarge { .. }))
-            if config.states.is_none() && config.bounds.is_empty() =>
+            if config.states.is_none() && config.among.bounds.is_empty() =>
         {
             let symbolic = Config { states: Some(States::Bitvec), ..config.clone() };
             let mut outcome = attempt(problem, objective, &symbolic, graphs)?;
@@ -44,7 +44,7 @@ fn attempt(
     let start = Instant::now();
     let stop = || config.deadline.passed();
     let (wish, limits) = (config.states, config.limits);
-    let encoder = Encoder::below(problem, objective, wish, limits, &stop, graphs, &config.bounds)?;
+    let encoder = Encoder::among(problem, objective, wish, limits, &stop, graphs, &config.among)?;
     if encoder.states.is_arithmetic() && config.solver.is_embedded() {
         return Err(needs_arithmetic(&encoder));
     }

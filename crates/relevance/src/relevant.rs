@@ -95,7 +95,7 @@ pub fn least(arena: &Arena<'_>, goal: &Goal) -> Result<i64, Error> {
 pub struct Relevance<'e, 'a> {
     arena: &'e Arena<'a>,
     /// Paths that are constants throughout.
-    fixed: Vec<Option<Run>>,
+    pub(crate) fixed: Vec<Option<Run>>,
     found: Relevant,
     narrowing: Narrowing,
     /// A time before which no choice of the leading block owes nothing but safety.
@@ -247,7 +247,7 @@ impl<'e, 'a> Relevance<'e, 'a> {
         Game::new(&question)
     }
 
-    fn question<'q, const N: usize>(
+    pub(crate) fn question<'q, const N: usize>(
         &'q self,
         paths: [PathId; N],
         goal: &'q Goal,

@@ -1,6 +1,7 @@
 //! What is to be decided: an objective, how far each of its paths is read, and the budgets.
 
 use crate::ceiling::Ceiling;
+use crate::cube::Cube;
 use hyperplan_horizon::{Horizon, horizons};
 use hyperplan_problem::{Mode, Objective, PathId, Problem, System};
 use hyperplan_space::{Graph, LIVE, StateIx};
@@ -204,4 +205,6 @@ pub struct Arena<'a> {
     pub graphs: TiVec<PathId, Arc<Graph>>,
     /// What the paths of the leading block may cost.
     pub ceilings: Vec<Ceiling>,
+    /// The runs of the leading block that are looked at.
+    pub cube: Cube,
 }

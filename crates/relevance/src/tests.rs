@@ -1,10 +1,12 @@
 //! What the tests of the modules share, and soundness by brute force: nothing is excluded that counts.
 
 use crate::belief::{Belief, believe};
+use crate::cube::{Case, Cube};
 use crate::goal::Goal;
 use crate::layers::Layers;
 use crate::reach::Question;
 use crate::relevant::{Narrowing, Relevance, leading};
+use crate::split::case;
 use crate::task::{Arena, Limits, Task};
 use hyperplan_problem::{PathId, Problem, Trace};
 use hyperplan_space::{Graph, Run};
@@ -20,7 +22,7 @@ pub(crate) fn arena(problem: &Problem) -> Arena<'_> {
     let task = Task::new(problem, objective, Limits::default(), &|| false).expect("it is short");
     let graph = |path: PathId| Arc::new(Graph::explore(task.system(path), 1000).expect("it is small"));
     let graphs = objective.paths.keys().map(graph).collect();
-    Arena { task, graphs, ceilings: Vec::new() }
+    Arena { task, graphs, ceilings: Vec::new(), cube: Cube::default() }
 }
 
 /// The question about a path of which nothing is known.
@@ -65,6 +67,27 @@ fn runs(arena: &Arena<'_>, path: PathId) -> Vec<(Trace, Run)> {
 /// Whether a run is in some layers, as long as these go.
 fn within(run: &Run, layers: &Layers) -> bool {
     (0..layers.at.len()).all(|time| layers.contains(time, run.states[time]))
+}
+
+/// So many cases, those that are not empty.
+fn cases(arena: &Arena<'_>, block: &[PathId], goal: &Goal, number: usize) -> Vec<Cube> {
+    let all = (0..number).map(|index| case(arena, block, goal, (index, number)).expect("it is small"));
+    let all: Vec<Case> = all.collect();
+    let some = all.iter().filter_map(|case| match case {
+        Case::Of(cube) => Some(cube.clone()),
+        Case::Empty => None,
+        Case::Whole => Some(Cube::default()),
+    });
+    let cubes: Vec<Cube> = some.collect();
+    match all.contains(&Case::Whole) {
+        true => vec![Cube::default()],
+        false => cubes,
+    }
+}
+
+/// Whether a run is in a case.
+fn is_in(run: &Run, path: PathId, cube: &Cube) -> bool {
+    cube.of(path).all(|(time, states)| states.contains(&run.states[time as usize]))
 }
 
 /// Whether the one choice of paths satisfies the formula.
@@ -166,6 +189,61 @@ proptest! {
             Belief::Hopeless => prop_assert!(!all.iter().any(|(p, _)| wins(p))),
             Belief::Open => prop_assert!(budget < usize::MAX),
             Belief::Unfit => prop_assert!(false, "all atoms are known"),
+        }
+    }
+
+    /// Whatever is satisfied is so in one case.
+    #[test]
+    fn satisfying_pairs_are_in_one_case(
+        system in system(),
+        formula in formula(&["p", "q"]),
+        number in 1..7usize,
+    ) {
+        let problem = objective(&system, "exists p. exists q.", &formula);
+        let arena = arena(&problem);
+        let goal = Goal::new(&arena.task.objective.formula, true);
+        let cases = cases(&arena, &[P, Q], &goal, number);
+        for (p, p_run) in runs(&arena, P) {
+            for (q, q_run) in runs(&arena, Q) {
+                if satisfied(&arena, &p, &q) {
+                    let holds = |cube: &&Cube| is_in(&p_run, P, cube) && is_in(&q_run, Q, cube);
+                    prop_assert_eq!(cases.iter().filter(holds).count(), 1, "{:?}", cases);
+                }
+            }
+        }
+    }
+
+    /// Whoever wins does so in one case, where both kinds of search keep it, or find another.
+    #[test]
+    fn winners_are_in_one_case(
+        system in system(),
+        formula in formula(&["p", "q"]),
+        number in 1..7usize,
+        prune in any::<bool>(),
+    ) {
+        let problem = objective(&system, "exists p. forall q.", &formula);
+        let mut arena = arena(&problem);
+        arena.task.limits.prune = prune;
+        let goal = Goal::new(&arena.task.objective.formula, true);
+        let (all, others) = (runs(&arena, P), runs(&arena, Q));
+        prop_assume!(!others.is_empty());
+        let wins = |p: &Trace| others.iter().all(|(q, _)| satisfied(&arena, p, q));
+        let winners: Vec<&Run> = all.iter().filter(|(p, _)| wins(p)).map(|(_, run)| run).collect();
+        let cases = cases(&arena, &[P], &goal, number);
+        for run in &winners {
+            prop_assert_eq!(cases.iter().filter(|cube| is_in(run, P, cube)).count(), 1, "{:?}", cases);
+        }
+        for cube in &cases {
+            let own = Arena { cube: cube.clone(), ..arena.clone() };
+            let found = leading(&own, &[P], &goal, Narrowing::default()).expect("it is small");
+            let kept = layers(&mut Relevance::new(&own, vec![None, None], found), P, &goal);
+            let here: Vec<_> = winners.iter().filter(|run| is_in(run, P, cube)).collect();
+            prop_assert!(here.iter().all(|run| within(run, &kept)), "{:?}", cube);
+            match believe(&own, 1, &goal, usize::MAX).expect("it is small") {
+                Belief::Found(found) => prop_assert!(wins(&found[0].trace(P, own.task.system(P)))),
+                Belief::Hopeless => prop_assert!(here.is_empty(), "{:?}", cube),
+                Belief::Open | Belief::Unfit => prop_assert!(false, "there is no limit"),
+            }
         }
     }
 

@@ -1,17 +1,20 @@
-//! An objective in cases by first actions comes to the same as the whole.
+//! An objective in cases comes to the same as the whole.
 
 use super::{Tally, seeds};
-use hyperplan_plan::{Quantifiers, Verdict, cubes, within};
+use hyperplan_plan::{Config, Quantifiers, States, Verdict, case, solve};
 use hyperplan_problem::Quantifier;
+use hyperplan_solver::{Deadline, Spec};
 use hyperplan_tests::brute::Brute;
-use hyperplan_tests::judge::{lowered, verdict};
+use hyperplan_tests::judge::lowered;
 use hyperplan_tests::model::Semantics;
 use hyperplan_tests::random::{Random, halting_problem, problem, problem_with_semantics};
+use std::time::Duration;
 
+/// Cut by where paths are, and, where states are written by variable, by what paths do.
 #[test]
 fn cases_come_to_the_whole() {
     let mut tally = Tally::default();
-    let mut cut = 0;
+    let mut cut = [0; 2];
     for seed in seeds(400) {
         let mut random = Random::new(seed);
         let problem = match random.below(3) {
@@ -22,14 +25,22 @@ fn cases_come_to_the_whole() {
                 problem_with_semantics(&mut random, semantics)
             }
         };
-        let text = problem.to_string();
-        let typed = lowered(&text);
+        let typed = lowered(&problem.to_string());
         let objective = &typed.objectives[0];
-        let at_least = 1 + random.below(12);
-        let cases = cubes(&typed, objective, at_least);
-        cut += u32::from(cases.len() > 1);
-        let verdicts: Vec<Verdict> =
-            cases.iter().map(|cube| verdict(&typed, &within(objective, cube), Quantifiers::Auto)).collect();
+        let states = [None, None, Some(States::Bitvec)][random.below(3)];
+        let ways = [Quantifiers::Auto, Quantifiers::Cegis, Quantifiers::Expand];
+        let quantifiers = ways[random.below(3)];
+        let deadline = Deadline::after(Duration::from_secs(60));
+        let config = Config { quantifiers, states, deadline, ..Config::new(Spec::Builtin) };
+        let number = 1 + random.below(12);
+        let verdict = |index: usize| {
+            let (own, config) = case(&typed, objective, (index, number), &config).expect("it is small");
+            let places = config.among.cube != Default::default();
+            let actions = states.is_some() && own.formula.nodes.len() > objective.formula.nodes.len();
+            cut = [cut[0] + u32::from(places), cut[1] + u32::from(actions)];
+            solve(&typed, &own, &config).expect("it is supported").verdict
+        };
+        let verdicts: Vec<Verdict> = (0..number).map(verdict).collect();
         let (decides, all) = match objective.paths.first().expect("there is one").quantifier {
             Quantifier::Exists => (Verdict::Realizable, Verdict::Unrealizable),
             Quantifier::Forall => (Verdict::Unrealizable, Verdict::Realizable),
@@ -38,9 +49,9 @@ fn cases_come_to_the_whole() {
         assert!(!verdicts.contains(&Verdict::Unknown), "seed {seed}: {verdicts:?}\n{problem}");
         let expected = Brute::new(&problem, usize::MAX / 8).expect("no limit").verdict();
         let found = together == Verdict::Realizable;
-        assert_eq!(found, expected, "seed {seed}: {cases:?} give {verdicts:?}\n{problem}");
+        assert_eq!(found, expected, "seed {seed}: {number} cases give {verdicts:?}\n{problem}");
         tally.add(expected);
     }
-    assert!(cut > 0, "nothing was ever cut");
+    assert!(cut[0] > 0 && cut[1] > 0, "nothing was ever cut: {cut:?}");
     tally.assert_balanced();
 }

@@ -9,6 +9,7 @@ use crate::{except, nothing};
 
 /// Files of libraries that may name flags, and why.
 const FLAGS: &[(&str, &str)] = &[
+    ("crates/compare/src/cases.rs", "it writes what a run on a case is told, and finds it again in a log"),
     ("crates/compare/src/pool.rs", "it writes the command lines of the runs that it starts"),
     ("crates/compare/src/slurm.rs", "those of Slurm"),
     ("crates/solver/src/external/profile.rs", "those of solvers"),

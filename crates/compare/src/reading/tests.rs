@@ -41,6 +41,7 @@ fn answers_to_problems() {
         rounds: Some(2),
         reason_code: None,
         message: None,
+        case: None,
     };
     assert_eq!(reading, expected);
     let status = |code, verdict, reason| of_problem(&ended(code, &said(verdict, reason), ""), false).status;

@@ -47,6 +47,7 @@ pub(crate) fn run(solver: &str, instance: &str, status: RunStatus, wall_s: f64) 
         rounds: Some(1),
         reason_code: None,
         processor: Some("a processor".to_owned()),
+        case: None,
         ended_ms: None,
     }
 }

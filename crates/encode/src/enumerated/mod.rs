@@ -18,8 +18,8 @@ use hyperplan_problem::{
 };
 use hyperplan_relevance::Error;
 use hyperplan_relevance::{
-    Arena, Belief, Game, Goal, Instance, Known, Layers, Move, Narrowing, Numbering, Relevance, Relevant,
-    Start, believe, cases, generalize, in_state, leading, least,
+    Arena, Belief, Case, Game, Goal, Instance, Known, Layers, Move, Narrowing, Numbering, Relevance,
+    Relevant, Start, believe, case, cases, generalize, in_state, leading, least,
 };
 use hyperplan_smt::{Model, Script, Term, Terms};
 use hyperplan_space::{Graph, Letter, Run, StateIx, eval};
@@ -100,6 +100,10 @@ impl Writer for Enumerated<'_> {
 
     fn least(&self, goal: &Goal) -> Result<Option<i64>, Error> {
         least(&self.arena, goal).map(Some)
+    }
+
+    fn case(&self, block: &[PathId], goal: &Goal, number: (usize, usize)) -> Result<Case, Error> {
+        case(&self.arena, block, goal, number)
     }
 
     fn believe(&self, block: &[PathId], goal: &Goal, budget: usize) -> Result<Belief<Vec<Known>>, Error> {

@@ -1,6 +1,6 @@
 //! What may be typed behind `compare`.
 
-use super::{Reading, quantifiers, setting, states};
+use super::{Part, Reading, part, quantifiers, setting, states};
 use clap::{Args, Parser, ValueEnum};
 use hyperplan_problem::answer::{Quantifiers, States};
 use serde::{Deserialize, Serialize};
@@ -11,8 +11,6 @@ use std::path::PathBuf;
 pub(crate) struct Compare {
     #[command(flatten)]
     pub(crate) asked: Asked,
-    #[command(flatten)]
-    pub(crate) reading: Reading,
     /// How many runs at a time; they slow each other down
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
     pub(crate) jobs: u16,
@@ -29,7 +27,7 @@ pub(crate) struct Compare {
     #[arg(long)]
     pub(crate) queries: bool,
     /// Runs nothing, but writes the same comparison of problem files for BenchExec
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["plan", "shard", "merge", "engine"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["plan", "shard", "merge", "engine", "cubes"])]
     pub(crate) benchexec: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) cluster: Cluster,
@@ -81,6 +79,18 @@ pub(crate) struct Asked {
     /// Leaves strategies unchecked
     #[arg(long)]
     pub(crate) no_verify: bool,
+    /// Cuts each objective into N cases, each a run of its own, on several machines perhaps; reports have what they come to together
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=10_000))]
+    #[serde(default = "one")]
+    pub(crate) cubes: u16,
+    /// A plan names the problems that came of them.
+    #[command(flatten)]
+    #[serde(skip)]
+    pub(crate) reading: Reading,
+}
+
+fn one() -> u16 {
+    1
 }
 
 impl Asked {
@@ -144,7 +154,7 @@ pub(crate) enum Engine {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shard {
     /// One of so many shares, from 0.
-    Share { index: usize, of: usize },
+    Share(Part),
     /// Whatever is left.
     Next,
 }
@@ -191,27 +201,70 @@ fn shard(text: &str) -> Result<Shard, String> {
     if text == "next" {
         return Ok(Shard::Next);
     }
-    let number = |text: &str| text.trim().parse::<usize>().ok();
-    match text.split_once('/').and_then(|(index, of)| number(index).zip(number(of))) {
-        Some((index, of)) if index >= 1 && index <= of && of <= MOST_SHARES => {
-            Ok(Shard::Share { index: index - 1, of })
-        }
-        Some(_) => Err(format!("expected a share from 1/N to N/N, with N at most {MOST_SHARES}")),
-        None => Err("expected a share, such as 1/4, or `next`".to_owned()),
-    }
+    part(text, MOST_SHARES).map(Shard::Share).map_err(|error| format!("{error}; or `next`"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use clap::CommandFactory as _;
 
     #[test]
     fn shares_are_read() {
-        assert_eq!(shard("1/4"), Ok(Shard::Share { index: 0, of: 4 }));
+        assert_eq!(shard("1/4"), Ok(Shard::Share(Part { index: 0, of: 4 })));
         assert_eq!(shard("next"), Ok(Shard::Next));
         for wrong in ["", "0/4", "5/4", "1/0", "1", "a/b", "-1/4", "1/1000000"] {
             assert!(shard(wrong).is_err(), "{wrong}");
         }
+    }
+
+    /// Where or how runs are done, which changes nothing of what they are. Every other option is part of what a plan says.
+    const ELSEWHERE: [&str; 15] = [
+        "jobs",
+        "pin",
+        "out",
+        "queries",
+        "benchexec",
+        "plan",
+        "shard",
+        "log",
+        "merge",
+        "echo",
+        "engine",
+        "tasks",
+        "exclusive",
+        "unshared",
+        "submit",
+    ];
+
+    /// Values of which one fits each option, and is not what it is without.
+    const VALUES: [&str; 8] = ["7", "a", "T=3", "cegis", "bitvec", "pes", "hyperqb1", "true"];
+
+    #[test]
+    fn every_option_that_shapes_a_run_is_part_of_a_plan() {
+        #[derive(Parser)]
+        struct All {
+            #[command(flatten)]
+            all: Compare,
+        }
+        let mut shaping = 0;
+        for option in All::command().get_arguments().filter_map(|argument| argument.get_long()) {
+            if ["help", "version"].contains(&option) || ELSEWHERE.contains(&option) {
+                continue;
+            }
+            let with = VALUES
+                .iter()
+                .map(|value| vec![format!("--{option}={value}")])
+                .chain([vec![format!("--{option}")]]);
+            let parsed = with.filter_map(|words| {
+                let needed = (option == "semantics").then(|| "--bound=3".to_owned());
+                All::try_parse_from(["".to_owned()].into_iter().chain(needed).chain(words)).ok()
+            });
+            let told: Vec<bool> = parsed.map(|All { all }| !all.asked.is_default()).collect();
+            assert!(told.contains(&true), "--{option} is not part of what is asked: {told:?}");
+            shaping += 1;
+        }
+        assert!(shaping > 10, "{shaping}");
     }
 
     #[test]
@@ -223,6 +276,7 @@ mod tests {
         }
         let said = |words: &[&str]| Said::try_parse_from(words).expect("they are options").asked.is_default();
         assert!(said(&[""]));
+        assert!(!said(&["", "--bound=5"]) && !said(&["", "--dialect=hyperqb1"]));
         assert!(!said(&["", "a.hp"]) && !said(&["", "--timeout=5"]) && !said(&["", "--seed=1"]));
     }
 }

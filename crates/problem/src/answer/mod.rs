@@ -63,6 +63,21 @@ pub struct Answer {
     /// Files with certificates of what is impossible, where these were asked for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub certificates: Vec<String>,
+    /// The case that the verdict is about, where it is not about the whole objective.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub case: Option<Case>,
+}
+
+/// One of several cases that together are all of an objective.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
+pub struct Case {
+    /// Which it is, from 1.
+    pub index: u32,
+    /// How many there are.
+    pub of: u32,
+    /// The verdict that is that of the objective where one case has it; the objective has the other where all cases do.
+    pub decides: Verdict,
 }
 
 /// The value of a sum of costs.

@@ -40,6 +40,8 @@ pub(crate) struct Exploration<'a, const N: usize> {
     deadline: Option<u32>,
     /// The last time at which each state was found to be admitted, plus one; where it is looked up.
     within: [Vec<u32>; N],
+    /// In which states each path is at some times.
+    cuts: [Vec<(u32, &'a [StateIx])>; N],
     bound: Option<Bound>,
     /// Whether a run was lost that the goal does not exclude.
     lossy: bool,
@@ -66,6 +68,7 @@ impl<'a, const N: usize> Exploration<'a, N> {
             forget: u32::MAX,
             deadline: None,
             within,
+            cuts: question.paths.map(|path| question.arena.cube.of(path).collect()),
             bound: None,
             lossy: false,
             recent: Recent::default(),
@@ -150,6 +153,9 @@ impl<'a, const N: usize> Exploration<'a, N> {
     fn admits(&self, at: usize, state: StateIx, time: u32) -> bool {
         self.product.question.arena.task.lasts(self.product.graphs[at], state, time)
             && (self.within[at].is_empty() || self.within[at][state as usize] == time + 1)
+            && self.cuts[at]
+                .iter()
+                .all(|(when, states)| *when != time || states.binary_search(&state).is_ok())
     }
 
     /// Marks the states that the paths may be in at a time.

@@ -179,6 +179,7 @@ fn ways(asked: &Asked) -> Result<Ways> {
         seeds: unique(asked.seed.iter().copied()),
         repetitions: asked.repeat,
         limit: Limit { wall_s: Some(asked.timeout), cpu_s: asked.cpu, memory_mib: asked.memory },
+        cases: asked.cubes,
         options: asked.no_verify.then(|| "--no-verify".to_owned()).into_iter().collect(),
         build: String::new(),
     })

@@ -18,7 +18,7 @@ use doing::{Doing, keys};
 use hyperplan_compare::merge::{Settled, settled};
 use hyperplan_compare::plan::Run;
 use hyperplan_compare::report::write_all;
-use hyperplan_compare::{Fault, Log, Past, Record, judge, summary, tidy};
+use hyperplan_compare::{Fault, Log, Past, Record, judge, summary, tidy, together};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -142,7 +142,7 @@ fn place(record: &Record) -> impl Ord + use<> {
 fn report(args: &args::Compare, records: &[Record], out: &mut Output) -> Result {
     let folder = args.out.as_path();
     let believed = args.certified.then(|| certified::certified(records, out));
-    let records = believed.as_deref().unwrap_or(records);
+    let records = &together(believed.unwrap_or_else(|| records.to_vec()));
     let processors: BTreeSet<&str> = records.iter().filter_map(|run| run.processor.as_deref()).collect();
     if processors.len() > 1 {
         let all: Vec<&str> = processors.into_iter().collect();

@@ -3,7 +3,7 @@
 use super::comparison::Comparison;
 use super::doing::{Doing, host, keys};
 use super::told_before;
-use crate::args::{self, Shard};
+use crate::args::{self, Part, Shard};
 use crate::failure::{Exit, Failure, Result};
 use crate::files::{cannot_write, reason};
 use crate::output::Output;
@@ -34,7 +34,7 @@ pub(super) fn run(
     let doing = Doing::new(args)?;
     let source = Source::new(comparison, out)?;
     let (name, all) = match shard {
-        Shard::Share { index, of } => {
+        Shard::Share(Part { index, of }) => {
             let name = format!("runs-{}-of-{of}.jsonl", index + 1);
             (args.cluster.log.clone().unwrap_or(name), source.pieces(of).swap_remove(index))
         }
@@ -50,7 +50,7 @@ pub(super) fn run(
     let mut progress = share.doing.progress(left, verbose, out);
     let before = share.done.len();
     let finished = match shard {
-        Shard::Share { .. } => share.some(&all, &mut log, &mut progress),
+        Shard::Share(_) => share.some(&all, &mut log, &mut progress),
         Shard::Next => share.all_that_is_left(&args.out, &mut log, &mut progress),
     };
     drop(progress);

@@ -2,7 +2,7 @@
 
 mod lanes;
 
-use crate::args::{self, SolveFormat};
+use crate::args::{self, Part, SolveFormat};
 use crate::config;
 use crate::explain::{Explain, Why};
 use crate::failure::{Exit, Failure, Result};
@@ -12,7 +12,7 @@ use crate::guard;
 use crate::load::Loaded;
 use crate::nusmv;
 use crate::output::Output;
-use crate::parameter::Searched;
+use crate::parameter::{Parameter, Searched};
 use crate::plans;
 use crate::proof::{Prover, Said};
 use crate::report::{Picture, json, write_picture};
@@ -22,7 +22,7 @@ use hyperplan_outlet::one_line;
 use hyperplan_plan::{self as plan, MinimizeError, Watch};
 use hyperplan_problem::answer::plans::PlanFormat;
 use hyperplan_problem::answer::{
-    Answer, Below, CostValue, Failed, Ordered, ReasonCode, Seconds, Size, Solver, Verdict, Verified,
+    Answer, Below, Case, CostValue, Failed, Ordered, ReasonCode, Seconds, Size, Solver, Verdict, Verified,
     WitnessPath, to_witness,
 };
 use hyperplan_problem::{Objective, Quantifier, Strategy, Target, Trace, display};
@@ -77,6 +77,7 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
         let own = own.or(open.undecided.as_ref()).map(|reason| Why::new(reason, explain));
         let why = own.as_ref().or_else(|| searched?.undecided.as_ref());
         let mut answer = answer(loaded, objective, &outcome, (searched, open.costs), why, total);
+        answer.case = args.cube.map(|part| case(part, objective));
         let about = (loaded, objective);
         let certified = certify(args, &config, (&mut answer, &outcome), &wish, about, out);
         worst = worst.max(certified);
@@ -111,6 +112,12 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
         worst = worst.max(failure.status);
     }
     Ok(worst)
+}
+
+/// What an answer says of the case that it is about.
+fn case(part: Part, objective: &Objective) -> Case {
+    let number = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
+    Case { index: number(part.index + 1), of: number(part.of), decides: lanes::decides(objective) }
 }
 
 /// As [`solve`], saying how far it is where that takes long.
@@ -238,23 +245,23 @@ fn solve(
     team: &Team<'_>,
     explain: Explain<'_>,
 ) -> Result<Solved, (Failure, ReasonCode)> {
-    if team.args.portfolio.is_some() || team.args.cubes.is_some() {
-        return Ok((team.solve(loaded, objective)?, None, Costs::default()));
+    if team.is_wanted() {
+        return team.solve(loaded, objective, wish, explain);
     }
-    let cube = team.cube(loaded, objective).map_err(|failure| (failure, ReasonCode::Unsupported))?;
-    let own = (!cube.is_empty()).then(|| plan::within(objective, &cube));
-    let (objective, config) = (own.as_ref().unwrap_or(objective), team.config);
     let name = &objective.name;
+    let case = team.args.cube.map(|Part { index, of }| {
+        plan::case(&loaded.problem, objective, (index, of), team.config)
+            .map_err(|error| (explain.failure(name, &error), error.code()))
+    });
+    let own = case.transpose()?;
+    let (objective, config) = own.as_ref().map_or((objective, team.config), |(own, config)| (own, config));
     let failed = |error: &plan::Error, value: String| {
         (explain.failure(format_args!("{name}{value}"), error), error.code())
     };
     if let Wish::Constant(parameter) = wish {
         return match parameter.least(loaded, objective, config, explain) {
             Ok((outcome, searched)) => Ok((outcome, Some(searched), Costs::default())),
-            Err(MinimizeError::Problem(failure)) => Err((failure, ReasonCode::Unsupported)),
-            Err(MinimizeError::Solve { value, error }) => {
-                Err(failed(&error, format!(" with {} = {value}", parameter.constant)))
-            }
+            Err(error) => Err(unsolved(name, parameter, error, explain)),
         };
     }
     let targets = wish.targets(loaded, objective).map_err(|failure| (failure, ReasonCode::Unsupported))?;
@@ -274,6 +281,22 @@ fn solve(
     };
     let costs = targets.iter().zip(&values).map(value).collect();
     Ok((outcome, None, Costs { costs, undecided }))
+}
+
+/// Why the least value of a constant is not known.
+fn unsolved(
+    name: &str,
+    parameter: &Parameter<'_>,
+    error: MinimizeError<Failure>,
+    explain: Explain<'_>,
+) -> (Failure, ReasonCode) {
+    match error {
+        MinimizeError::Problem(failure) => (failure, ReasonCode::Unsupported),
+        MinimizeError::Solve { value, error } => {
+            let about = format_args!("{name} with {} = {value}", parameter.constant);
+            (explain.failure(about, &error), error.code())
+        }
+    }
 }
 
 fn status(answer: &Answer) -> Exit {
@@ -325,6 +348,7 @@ fn answer(
         minimized: searched.map(|searched| searched.minimized.clone()),
         costs,
         certificates: Vec::new(),
+        case: None,
     }
 }
 
@@ -408,6 +432,9 @@ impl<'a> Found<'a> {
             (Verdict::Unrealizable, Some(_)) => "unrealizable (violated)",
             (Verdict::Unknown, _) => "unknown",
         };
+        let case =
+            self.answer.case.map(|Case { index, of, .. }| format!("{verdict} in case {index} of {of}"));
+        let verdict = case.as_deref().unwrap_or(verdict);
         if !self.answer.costs.is_empty() {
             return format!("{}: {verdict} with {}", self.objective.name, self.costs());
         }
