@@ -8,7 +8,7 @@
 use crate::check::check;
 use crate::graph::Graph;
 use crate::outcomes::{differs_at, is};
-use crate::report::{Budget, Check, Defeat, Error};
+use crate::report::{Budget, Check, Defeat, Error, Stop};
 use hyperplan_problem::{
     ActionId, Expr, Formula, FormulaId, Interval, Mode, Node, Objective, PathId, PathLeaf, Problem, State,
     Strategy, SystemId, Trace,
@@ -36,37 +36,54 @@ pub fn worst(
     beginning: Option<(PathId, &Beginning)>,
     budget: &Budget,
 ) -> Result<Option<Vec<Trace>>, Error> {
+    match find(problem, objective, strategy, beginning, budget) {
+        Ok(found) => Ok(found),
+        Err(Stop::Budget) => Ok(None),
+        Err(Stop::Error(error)) => Err(error),
+    }
+}
+
+fn find(
+    problem: &Problem,
+    objective: &Objective,
+    strategy: &Strategy,
+    beginning: Option<(PathId, &Beginning)>,
+    budget: &Budget,
+) -> Result<Option<Vec<Trace>>, Stop> {
     let others = Others::of(objective);
     if others.conjuncts.is_empty() {
         return Ok(None);
     }
-    let defeat = |formula: Formula| -> Result<Option<Vec<Trace>>, Error> {
+    let defeat = |formula: Formula| {
         let mut asked = Objective { formula, ..objective.clone() };
         if let Some((path, beginning)) = beginning {
             begin(problem, &mut asked, path, beginning);
         }
-        Ok(match check(problem, &asked, strategy, budget)? {
-            Check::Fails(Defeat::Paths(traces)) => Some(traces),
-            _ => None,
-        })
+        match check(problem, &asked, strategy, budget) {
+            Ok(Check::Holds) => Ok(None),
+            Ok(Check::Fails(Defeat::Paths(traces))) => Ok(Some(traces)),
+            // Where paths end at their horizon, that of earlier deadlines is another.
+            Ok(_) | Err(Error::WrongLength { .. }) => Err(Stop::Budget),
+            Err(error) => Err(Stop::Error(error)),
+        }
     };
-    let longest = others.longest();
-    // The least number of steps by which deadlines cannot come earlier, found by bisection: the larger, the harder.
-    if let Some(mut found) = defeat(others.tightened(longest))? {
-        let (mut holds, mut fails) = (0, longest);
-        if let Some(already) = defeat(others.tightened(0))? {
-            return Ok(Some(already));
-        }
-        while fails - holds > 1 {
-            let middle = holds + (fails - holds) / 2;
-            match defeat(others.tightened(middle))? {
-                Some(traces) => (fails, found) = (middle, traces),
-                None => holds = middle,
-            }
-        }
-        return Ok(Some(found));
+    if let Some(already) = defeat(others.tightened(0))? {
+        return Ok(Some(already));
     }
-    defeat(others.impossible())
+    let longest = others.longest();
+    let Some(mut found) = defeat(others.tightened(longest))? else {
+        return defeat(others.impossible());
+    };
+    // The least number of steps by which deadlines cannot come earlier, by bisection: the larger, the harder.
+    let (mut holds, mut fails) = (0, longest);
+    while fails - holds > 1 {
+        let middle = holds + (fails - holds) / 2;
+        match defeat(others.tightened(middle))? {
+            Some(traces) => (fails, found) = (middle, traces),
+            None => holds = middle,
+        }
+    }
+    Ok(Some(found))
 }
 
 /// The first so many initial states of a system; `None` if they are not found within the budget.

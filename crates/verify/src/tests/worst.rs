@@ -140,6 +140,9 @@ fn a_beginning_that_breaks_what_is_assumed_has_no_path() {
         None
     );
     assert!(of(&Beginning { start: None, actions: vec![right, right] }).is_some());
+    // What was not found out is not told.
+    let little = Budget { moves: 1, ..budget };
+    assert_eq!(worst(&problem, objective, &strategy, None, &little), Ok(None));
     // Without a deadline, any path that is meant will do.
     let safe = self::problem(
         "system W = grid { \"SS..G\" } { edge stay; absorb goal; }
