@@ -214,7 +214,7 @@ pub(crate) struct Solve {
     /// Or finds the cheapest strategy: `cost fuel[p]`, in place of what the objective says after `minimize`
     #[arg(long, value_name = "CONST[=LO..HI]|EXPR", value_parser = wish)]
     pub(crate) minimize: Option<Wish>,
-    /// Draws the map with the paths into an .svg (or .txt) file
+    /// Draws the paths into an .svg, .png, .pdf, .gif, .html or .txt file, as `plot` does
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
     /// Saves the answer as JSON; into a .csv, .yaml (ROS), .geojson or .plan (PDDL) file the strategy in that format, of

@@ -1,6 +1,6 @@
 //! What moves along paths in films and on pages.
 
-use crate::style::{number, stroke};
+use crate::style::{clipped, number, stroke};
 use svg::node::element::{Circle, Group, Line, Text};
 
 pub(crate) type Point = (f64, f64);
@@ -46,15 +46,14 @@ impl Mover {
     /// What it looks like, about the origin.
     pub(crate) fn drawn(&self) -> Group {
         match self {
-            Mover::Robot { index, name, radius, .. } => {
-                let (color, _) = stroke(*index);
+            Mover::Robot { index, name: path, radius, .. } => {
+                let ((color, _), name) = (stroke(*index), clipped(path, 6));
                 let disc = Circle::new().set("r", number(*radius)).set("fill", color);
                 let disc = disc.set("stroke", "#ffffff").set("stroke-width", 1.5);
                 let size = (radius * 1.3).min(2.6 * radius / (name.chars().count() as f64).max(1.0));
-                let text =
-                    Text::new(name.as_str()).set("text-anchor", "middle").set("y", number(size * 0.36));
+                let text = Text::new(name).set("text-anchor", "middle").set("y", number(size * 0.36));
                 let text = text.set("font-size", number(size)).set("style", "fill: #ffffff");
-                Group::new().set("class", "robot").set("data-path", name.as_str()).add(disc).add(text)
+                Group::new().set("class", "robot").set("data-path", path.as_str()).add(disc).add(text)
             }
             Mover::Cursor { height, .. } => {
                 let line = Line::new().set("y2", number(*height)).set("stroke", "#c00000");

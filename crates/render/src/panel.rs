@@ -1,7 +1,7 @@
 //! What a picture is put together from: panels, with legends below.
 
 use crate::mover::Mover;
-use crate::style::{LEGEND_LINE, MARGIN, fill, number, stroke, width};
+use crate::style::{LEGEND_LINE, MARGIN, clipped, fill, number, stroke, width};
 use svg::node::element::{Group, Line, Rectangle, Text};
 
 /// What a drawing is for.
@@ -38,6 +38,8 @@ pub(crate) enum Entry {
 
 /// The size of a legend's letters.
 const LETTERS: f64 = 13.0;
+/// The most letters of a line.
+const MOST_LETTERS: usize = 100;
 
 impl Panel {
     /// Puts a legend below.
@@ -46,6 +48,7 @@ impl Panel {
         group = group.set("font-size", LETTERS);
         for entry in entries {
             let (swatch, words, left) = entry.parts();
+            let words = clipped(&words, MOST_LETTERS);
             let left = MARGIN + left;
             wide = wide.max(left + width(&words, LETTERS) + MARGIN);
             let line = Group::new().set("transform", format!("translate(0 {})", number(y)));
@@ -59,8 +62,13 @@ impl Panel {
 
     /// Puts a name above, where there are several panels.
     pub(crate) fn with_title(self, title: &str) -> Panel {
+        let title = &clipped(title, MOST_LETTERS);
         let moved = self.group.set("transform", "translate(0 14)");
-        let text = Text::new(title).set("x", MARGIN).set("y", 22).set("font-size", 15).set("class", "title");
+        let text = Text::new(title.as_str())
+            .set("x", MARGIN)
+            .set("y", 22)
+            .set("font-size", 15)
+            .set("class", "title");
         let width = self.width.max(2.0 * MARGIN + width(title, 15.0));
         let movers = self.movers.into_iter().map(|mover| mover.moved((0.0, 14.0))).collect();
         Panel { group: Group::new().add(text).add(moved), width, height: self.height + 14.0, movers }

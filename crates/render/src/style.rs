@@ -106,6 +106,14 @@ pub(crate) fn on_white(words: &str, (x, y): (f64, f64), size: f64, color: &str) 
     text.set("stroke", "#ffffff").set("stroke-width", 2.5).set("stroke-linejoin", "round")
 }
 
+/// No more of words than there is room for.
+pub(crate) fn clipped(words: &str, most: usize) -> String {
+    match words.char_indices().nth(most) {
+        Some((end, _)) => format!("{}…", &words[..end]),
+        None => words.to_owned(),
+    }
+}
+
 /// How wide words are, at most.
 pub(crate) fn width(words: &str, size: f64) -> f64 {
     words.chars().count() as f64 * size * LETTER

@@ -2,7 +2,7 @@
 
 use crate::mover::Mover;
 use crate::panel::{Entry, Panel};
-use crate::style::{MARGIN, every, number, stroke, width};
+use crate::style::{MARGIN, clipped, every, number, stroke, width};
 use crate::table::in_words;
 use crate::track::Track;
 use hyperplan_outlet::one_line;
@@ -39,7 +39,7 @@ pub(crate) fn panel(
     let vars: Vec<VarId> = system.vars.keys().filter(|var| system.vars[*var].sums.is_none()).collect();
     let mut rows = vec![("action".to_owned(), actions(problem, trace))];
     for var in vars.iter().take(MOST_ROWS) {
-        rows.push((one_line(&system.vars[*var].name).into_owned(), values(system, *var, trace)));
+        rows.push((clipped(&one_line(&system.vars[*var].name), 24), values(system, *var, trace)));
     }
     if vars.len() > MOST_ROWS {
         entries.push(Entry::Words(format!("and {} more variables", vars.len() - MOST_ROWS)));

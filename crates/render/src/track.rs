@@ -4,7 +4,7 @@
 //! one that comes back the way it went, can be followed.
 
 use crate::mover::{Mover, Point};
-use crate::style::{end, every, number, on_white, stroke, width};
+use crate::style::{clipped, end, every, number, on_white, stroke, width};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use svg::node::element::path::Data;
@@ -338,7 +338,9 @@ fn numbers(tracks: &[Track<'_>], lines: &[Line], sizes: Sizes, mut taken: Vec<Ar
     for (track, line) in tracks.iter().zip(lines) {
         let group = Group::new().set("data-path", track.name);
         let name = line.at.first();
-        let name = name.and_then(|at| put(track.name, *at, sizes.letters + 3.0, stroke(track.index).0, true));
+        let name = name.and_then(|at| {
+            put(&clipped(track.name, 12), *at, sizes.letters + 3.0, stroke(track.index).0, true)
+        });
         groups.push(name.into_iter().fold(group, |group, name| group.add(name.set("class", "name"))));
     }
     let mut group = Group::new().set("class", "steps");

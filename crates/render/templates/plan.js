@@ -121,8 +121,8 @@ function show() {
   const here = rows[time];
   if (here) {
     here.classList.add("here");
-    const body = get("states").tBodies[0];
-    body.scrollTop = here.offsetTop - body.offsetTop - body.clientHeight / 2;
+    const tall = here.closest(".tall");
+    tall.scrollTop = here.offsetTop - tall.clientHeight / 2;
   }
   get("said").textContent = timer === null ? said() : "";
 }

@@ -290,3 +290,16 @@ fn hostile_sizes() {
     let scene = Scene { traces: &traces, ..scene(&problem, &strategy) };
     assert!(matches!(svg(scene), Err(Error::TooLong { .. })));
 }
+
+/// A small picture as a whole; `UPDATE=1` writes it anew.
+#[test]
+fn a_picture_as_a_whole() {
+    let problem = problem(BACK);
+    let strategy = strategy(&problem, BACK_WITNESS);
+    let drawn = svg(scene(&problem, &strategy)).expect("a map");
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/back.svg");
+    if std::env::var_os("UPDATE").is_some() {
+        std::fs::write(file, &drawn).expect("writable");
+    }
+    assert_eq!(drawn, std::fs::read_to_string(file).expect("it is part of the repository"));
+}
