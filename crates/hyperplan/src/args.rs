@@ -214,7 +214,7 @@ pub(crate) struct Solve {
     /// Or finds the cheapest strategy: `cost fuel[p]`, in place of what the objective says after `minimize`
     #[arg(long, value_name = "CONST[=LO..HI]|EXPR", value_parser = wish)]
     pub(crate) minimize: Option<Wish>,
-    /// Draws the map with the paths into an .svg (or .txt) file
+    /// Draws the paths into an .svg, .png, .pdf, .gif, .html or .txt file, as `plot` does
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
     /// Saves the answer as JSON; into a .csv, .yaml (ROS), .geojson or .plan (PDDL) file the strategy in that format, of
@@ -472,9 +472,18 @@ pub(crate) struct Plot {
     pub(crate) reading: Reading,
     #[command(flatten)]
     pub(crate) selection: Selection,
-    /// An .svg (or .txt) file; without it, text on standard output
+    /// An .svg, .png, .pdf, .gif, .html or .txt file; without it, text on standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+    /// Writes a picture for each time into this folder, as PNG, or as SVG if --output is one
+    #[arg(long, value_name = "DIR")]
+    pub(crate) frames: Option<PathBuf>,
+    /// Makes an SVG that moves by itself
+    #[arg(long, requires = "output")]
+    pub(crate) animate: bool,
+    /// Draws these paths only; without it, those of the strategy, and of the paths that it has to cope with the worst
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub(crate) path: Vec<String>,
 }
 
 #[derive(Debug, Args)]

@@ -6,7 +6,7 @@ use crate::failure::{Failure, Result};
 use crate::files::{check_writable, make_folder};
 use crate::guard;
 use crate::output::Output;
-use crate::report::Picture;
+use crate::pictures::Picture;
 use crate::signals;
 use chrono::{DateTime, NaiveDate, Utc};
 use hyperplan_plan::{Config, States, Status, Track};

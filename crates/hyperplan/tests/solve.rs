@@ -142,7 +142,7 @@ fn saves_and_draws() {
     let answer: serde_json::Value = serde_json::from_str(&saved).expect("one JSON object");
     assert_eq!(answer["witness"].as_array().map(Vec::len), Some(2));
     let drawn = std::fs::read_to_string(drawn).expect("drawn");
-    assert!(drawn.starts_with("<svg") && drawn.matches("<polyline").count() == 2, "{drawn}");
+    assert!(drawn.starts_with("<svg") && drawn.matches("class=\"path\"").count() == 2, "{drawn}");
 }
 
 #[test]
@@ -152,9 +152,13 @@ fn files_that_cannot_be_written_are_refused_before_the_work() {
         assert_eq!((run.status, run.stdout.as_str()), (2, ""), "{option}");
         assert!(run.stderr.contains("there is no directory no/such/folder"), "{}", run.stderr);
     }
-    let run = hyperplan(&["solve", "rooms.hp", "--objective", "sp", "--plot", "map.png"]);
+    let run = hyperplan(&["solve", "rooms.hp", "--objective", "sp", "--plot", "map.jpg"]);
     assert_eq!(run.status, 2);
-    assert!(run.stderr.contains("only .svg and .txt are supported"), "{}", run.stderr);
+    assert!(
+        run.stderr.contains("only .svg, .png, .pdf, .gif, .html and .txt are supported"),
+        "{}",
+        run.stderr
+    );
 }
 
 #[cfg(target_os = "linux")]

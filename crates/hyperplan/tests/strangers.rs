@@ -238,7 +238,10 @@ fn long_names() {
     ] {
         quiet(0, arguments);
     }
-    quiet(2, &["plot", text(&file), text(&strategy)]);
+    quiet(0, &["plot", text(&file), text(&strategy)]);
+    for picture in ["p.svg", "p.png", "p.gif", "p.html"] {
+        quiet(0, &["plot", text(&file), text(&strategy), "-o", text(&folder.path().join(picture))]);
+    }
     quiet(2, &["solve", text(&file), "--objective", &name]);
 }
 

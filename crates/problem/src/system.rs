@@ -245,6 +245,8 @@ pub struct Map {
     pub height: u32,
     /// Obstacle cells `(x, y)`, sorted.
     pub obstacles: Vec<(u32, u32)>,
+    /// Cells that nobody has seen, as maps of ROS have, whatever they were taken for; sorted.
+    pub unknown: Vec<(u32, u32)>,
     /// Labels that letters of the map carry, each with its letter.
     pub letters: Vec<(String, char)>,
     /// The variable that holds the column.

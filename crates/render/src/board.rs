@@ -30,6 +30,8 @@ pub struct Board {
     pub origin: (i64, i64),
     /// Cells that are obstacles, sorted.
     pub obstacles: Vec<(u32, u32)>,
+    /// Cells that nobody has seen, as maps of ROS have; whether they are obstacles, the others say.
+    pub unknown: Vec<(u32, u32)>,
     /// Labels that hold in some cells but not in all.
     pub marks: Vec<Mark>,
     /// Where a map lies, if it says so.
@@ -58,6 +60,7 @@ impl Board {
                 height: map.height,
                 origin: (0, 0),
                 obstacles: map.obstacles.clone(),
+                unknown: map.unknown.clone(),
                 marks: Vec::new(),
                 place: map.place,
                 x: map.x,
@@ -94,6 +97,7 @@ impl Board {
             height: rows,
             origin: (x_lo, y_lo),
             obstacles: Vec::new(),
+            unknown: Vec::new(),
             marks: Vec::new(),
             place: None,
             x,

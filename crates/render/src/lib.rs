@@ -1,23 +1,34 @@
-//! Maps with the paths of a strategy, as terminal text and as SVG, and traces as tables.
+//! Maps with the paths of a strategy, as terminal text, SVG, PNG and PDF, and traces as tables.
 //!
-//! The same input gives the same output, byte for byte. A system can be drawn if it is a map, has integer range
-//! variables `x` and `y`, or is a graph whose nodes lie somewhere; everything else gets a table. A drawing has at least
-//! one system that can be drawn; the traces of others are tables in it.
+//! The same input gives the same output, byte for byte. A system is drawn as a map if it is one or has integer range
+//! variables `x` and `y`, as a graph if it is one; paths of everything else are timelines, and tables in text.
 
+mod bitmap;
 mod board;
 mod drawing;
 mod eval;
+mod film;
+mod mover;
+mod page;
+mod panel;
+mod paper;
 mod roadmap;
+mod sheet;
+mod style;
 mod table;
 mod text;
+mod timeline;
+mod track;
 
 pub use board::{Board, Mark};
 pub use drawing::svg;
+pub use film::Film;
+pub use page::{Page, Part, Variant, page};
+pub use paper::{pdf, png};
 pub use table::{actions_line, steps_to_rest, table};
 pub use text::{TextStyle, text_map};
 
 use hyperplan_problem::{Objective, Problem, SystemId, Trace};
-use roadmap::Roadmap;
 use thiserror::Error;
 
 /// Why something cannot be drawn.
@@ -41,6 +52,35 @@ pub enum Error {
         /// The most cells that are drawn.
         limit: u64,
     },
+    /// The paths have more steps than are drawn.
+    #[error("path {path} cannot be drawn: {steps} steps are more than {limit}")]
+    TooLong {
+        /// The path variable.
+        path: String,
+        /// Its steps.
+        steps: usize,
+        /// The most steps that are drawn.
+        limit: usize,
+    },
+    /// There are too many pictures of a film.
+    #[error("{pictures} pictures, one for each time, are more than {limit}")]
+    TooManyPictures {
+        /// How many.
+        pictures: usize,
+        /// The most that are drawn.
+        limit: usize,
+    },
+    /// A film without a path.
+    #[error("there is no path, so nothing moves")]
+    NothingMoves,
+    /// The picture was made, but could not be written in that format.
+    #[error("the picture cannot be written as {format}: {reason}")]
+    Format {
+        /// The format.
+        format: &'static str,
+        /// What the library says.
+        reason: String,
+    },
     /// The problem has no system.
     #[error("there is no system to draw")]
     NoSystem,
@@ -55,23 +95,48 @@ pub struct Scene<'a> {
     pub objective: Option<&'a Objective>,
     /// The traces; each names a path variable of the objective.
     pub traces: &'a [Trace],
+    /// What legends say of paths that are not the strategy's: why these of all.
+    pub note: &'a str,
 }
+
+/// The most steps of all paths that are drawn.
+const MOST_STEPS: usize = 200_000;
 
 /// Whether there will be something to draw, once there is a strategy for the objective or a counterexample.
 ///
 /// # Errors
-/// If no system that it has paths of can be drawn.
+/// If a map that it has paths on is too large.
 pub fn can_draw(problem: &Problem, objective: &Objective) -> Result<(), Error> {
-    let systems = objective.leading_block().into_iter().map(|path| objective.paths[path].system);
-    let boards = systems.map(|system| match &problem.systems[system].coordinates {
-        Some(_) => Ok(()),
-        None => Board::without_marks(&problem.systems[system]).map(|_| ()),
-    });
-    // One that can be drawn is enough; else the first says why it cannot.
-    boards.reduce(|all, one| if all.is_ok() { all } else { one.or(all) }).unwrap_or(Err(Error::NoSystem))
+    for path in objective.leading_block() {
+        match Board::without_marks(&problem.systems[objective.paths[path].system]) {
+            // Paths without a map have a graph, or a timeline.
+            Ok(_) | Err(Error::Unsupported { .. }) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(())
 }
 
 impl<'a> Scene<'a> {
+    /// Refuses what is too long.
+    fn bounded(&self) -> Result<(), Error> {
+        let steps = self.traces.iter().map(|trace| trace.states.len()).sum::<usize>();
+        match self.traces.iter().max_by_key(|trace| trace.states.len()) {
+            Some(longest) if steps > MOST_STEPS => {
+                let path = self.objective.and_then(|objective| objective.paths.get(longest.path));
+                let path = path.map(|path| path.name.clone()).unwrap_or_default();
+                Err(Error::TooLong { path, steps: longest.actions.len(), limit: MOST_STEPS })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// What is said of a path that is not the strategy's.
+    fn note(&self, trace: &Trace) -> Option<&'a str> {
+        let leading = self.objective?.leading_block();
+        (!leading.contains(&trace.path) && !self.note.is_empty()).then_some(self.note)
+    }
+
     /// The boards of the systems that can be drawn, one at least.
     fn boards(&self) -> Result<Vec<(SystemId, Board)>, Error> {
         let (mut boards, mut reason) = (Vec::new(), Error::NoSystem);
@@ -85,19 +150,21 @@ impl<'a> Scene<'a> {
         if boards.is_empty() { Err(reason) } else { Ok(boards) }
     }
 
-    /// The systems that are graphs whose nodes lie somewhere.
-    fn roadmaps(&self) -> Result<Vec<(SystemId, Roadmap<'a>)>, Error> {
-        let systems = self.systems()?.into_iter();
-        Ok(systems.filter_map(|system| Some((system, Roadmap::of(&self.problem.systems[system])?))).collect())
-    }
-
     /// The traces of systems that are not drawn, as tables with their names.
     fn tables(&self, drawn: &[SystemId]) -> Vec<(String, String)> {
         let Some(objective) = self.objective else { return Vec::new() };
         let var = |trace: &'a Trace| objective.paths.get(trace.path).map(|var| (var, trace));
         let rest = self.traces.iter().filter_map(var);
         let rest = rest.filter(|(var, _)| !drawn.contains(&var.system));
-        rest.map(|(var, trace)| (heading(&var.name, trace), table(self.problem, objective, trace))).collect()
+        rest.map(|(var, trace)| (self.heading(&var.name, trace), table(self.problem, objective, trace)))
+            .collect()
+    }
+
+    /// The line above a trace: its name, until when something changes, and why it is there.
+    fn heading(&self, name: &str, trace: &Trace) -> String {
+        let steps = self.objective.map_or(trace.actions.len(), |o| steps_to_rest(self.problem, o, trace));
+        let note = self.note(trace).map(|note| format!(", {note}")).unwrap_or_default();
+        format!("{name} ({steps} step{}{note}):", if steps == 1 { "" } else { "s" })
     }
 
     /// The systems to draw, each once, in the order of the objective's paths.
@@ -127,10 +194,4 @@ impl<'a> Scene<'a> {
             .map(|(i, var, trace)| (i, var.name.as_str(), trace))
             .collect()
     }
-}
-
-/// The line above a trace.
-fn heading(name: &str, trace: &Trace) -> String {
-    let steps = trace.actions.len();
-    format!("{name} ({steps} step{}):", if steps == 1 { "" } else { "s" })
 }

@@ -1,22 +1,31 @@
-//! Graphs whose nodes lie somewhere, as SVG.
+//! Graphs as drawings: their nodes where they lie, or in layers where the file does not say.
 
-use crate::drawing::{LEGEND_LINE, MARGIN, STROKES, end, fill, number};
 use crate::eval::truth;
+use crate::mover::{Mover, Point};
+use crate::panel::{Entry, Panel};
+use crate::style::{MARGIN, fill, number, on_white, width};
+use crate::track::{Area, Sizes, head};
 use hyperplan_outlet::one_line;
 use hyperplan_problem::{System, Trace, Type, Value};
+use rust_sugiyama::configure::Config;
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use svg::node::element::path::Data;
-use svg::node::element::{Circle, Group, Line, Path, Polyline, Rectangle, Text, Title};
+use svg::node::element::{Circle, Group, Path};
 
 /// The longer side of a drawing.
 const SIDE: f64 = 900.0;
 /// Of more nodes the names would cover each other.
 const MOST_NAMES: usize = 120;
+/// Graphs with more nodes are not laid out.
+const MOST_LAID_OUT: usize = 150;
+/// From node to node, as far as lines and letters go.
+const ROOM: f64 = 36.0;
 
 /// A graph and how it fits on paper.
 pub(crate) struct Roadmap<'a> {
     system: &'a System,
-    places: &'a [(f64, f64)],
+    places: Cow<'a, [(f64, f64)]>,
     /// The least coordinates, and the greatest.
     low: (f64, f64),
     high: (f64, f64),
@@ -29,16 +38,24 @@ pub(crate) struct Roadmap<'a> {
 }
 
 impl<'a> Roadmap<'a> {
-    /// The roadmap of a system; none where its nodes lie nowhere.
+    /// The roadmap of a system; none where it is no graph, or one whose nodes lie nowhere and are too many.
     pub(crate) fn of(system: &'a System) -> Option<Self> {
-        let places = system.coordinates.as_deref().filter(|places| !places.is_empty())?;
+        let given = system.coordinates.as_deref().filter(|places| !places.is_empty());
+        let (places, side) = match given {
+            Some(places) => (Cow::Borrowed(places), SIDE),
+            // No larger than it has to be.
+            None => laid_out(system).map(|places| {
+                let side = SIDE.min(120.0 + 70.0 * (places.len() as f64).sqrt());
+                (Cow::Owned(places), side)
+            })?,
+        };
         let ends = |of: fn(&(f64, f64)) -> f64| {
             let values = || places.iter().map(of);
             (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max))
         };
         let ((left, right), (low, high)) = (ends(|place| place.0), ends(|place| place.1));
         let extent = (right - left).max(high - low);
-        let scale = if extent > 0.0 && extent.is_finite() { SIDE / extent } else { 1.0 };
+        let scale = if extent > 0.0 && extent.is_finite() { side / extent } else { 1.0 };
         let radius = (200.0 / (places.len() as f64).sqrt()).clamp(2.0, 8.0);
         let mut map = Roadmap {
             system,
@@ -71,14 +88,12 @@ impl<'a> Roadmap<'a> {
         marks
     }
 
-    pub(crate) fn width(&self) -> f64 {
-        (self.high.0 - self.low.0) * self.scale + 2.0 * MARGIN
+    pub(crate) fn labels(&self) -> usize {
+        self.marks.len()
     }
 
-    /// The height with the lines of the legend, of which one is for each path.
-    pub(crate) fn height(&self, paths: usize) -> f64 {
-        let lines = (paths + self.marks.len() + 1) as f64;
-        (self.high.1 - self.low.1) * self.scale + 2.0 * MARGIN + lines * LEGEND_LINE
+    pub(crate) fn sizes(&self) -> Sizes {
+        Sizes::of(ROOM)
     }
 
     fn point(&self, node: usize) -> (f64, f64) {
@@ -86,21 +101,30 @@ impl<'a> Roadmap<'a> {
         (number(MARGIN + (x - self.low.0) * self.scale), number(MARGIN + (self.high.1 - y) * self.scale))
     }
 
-    pub(crate) fn draw(&self, traces: &[(usize, &str, &Trace)]) -> Group {
+    /// The graph with paths.
+    pub(crate) fn panel(&self, (paths, movers): (Group, Vec<Mover>), mut entries: Vec<Entry>) -> Panel {
         let mut group = Group::new().set("class", "roadmap").add(self.edges());
         for node in 0..self.places.len() {
             let (x, y) = self.point(node);
-            let mark = self.marks.iter().find(|(_, nodes)| nodes.binary_search(&node).is_ok());
-            let circle =
-                Circle::new().set("cx", x).set("cy", y).set("r", self.radius).set("stroke", "#444444");
-            group = group.add(circle.set("fill", mark.map_or("#ffffff", |(label, _)| fill(label))));
+            let mark = self.marks.iter().position(|(_, nodes)| nodes.binary_search(&node).is_ok());
+            let circle = Circle::new().set("cx", x).set("cy", y).set("r", self.radius);
+            let fill = mark.map_or_else(|| "#ffffff".to_owned(), fill);
+            group = group.add(circle.set("stroke", "#444444").set("fill", fill));
         }
-        group = group.add(self.names());
-        for (place, (index, name, trace)) in traces.iter().enumerate() {
-            let aside = (place as f64 - (traces.len() as f64 - 1.0) / 2.0) * 4.0;
-            group = group.add(self.path(aside, *index, name, trace));
+        group = group.add(paths).add(self.names());
+        let labels = self.marks.iter().enumerate();
+        entries.extend(labels.map(|(i, (label, _))| Entry::Label(i, (*label).to_owned())));
+        let longest = match self.node_names() {
+            Some(names) => names.iter().map(|name| width(&one_line(name), 11.0)).fold(0.0, f64::max),
+            None => 0.0,
+        };
+        Panel {
+            group,
+            width: (self.high.0 - self.low.0) * self.scale + 2.0 * MARGIN + longest.min(200.0),
+            height: (self.high.1 - self.low.1) * self.scale + 2.0 * MARGIN + 12.0,
+            movers,
         }
-        group.add(self.legend(traces))
+        .with_legend(entries)
     }
 
     /// A line for each pair of nodes, and an arrow where there is no way back.
@@ -124,103 +148,76 @@ impl<'a> Roadmap<'a> {
     }
 
     /// An arrow's head before the node that it leads to.
-    fn arrow(&self, data: Data, (ax, ay): (f64, f64), (bx, by): (f64, f64)) -> Data {
-        let length = (bx - ax).hypot(by - ay);
-        if length < 1.0 {
-            return data;
+    fn arrow(&self, data: Data, a: Point, b: Point) -> Data {
+        let length = (b.0 - a.0).hypot(b.1 - a.1).max(1e-9);
+        let back = |to: f64, from: f64| to - (to - from) / length * self.radius;
+        head(data, (back(b.0, a.0), back(b.1, a.1)), a, b, 6.0)
+    }
+
+    /// The names of nodes, where they do not cover each other.
+    fn node_names(&self) -> Option<&'a [String]> {
+        match self.system.edges.as_ref().map(|edges| &self.system.vars[edges.var].ty) {
+            Some(Type::Enum(names)) if names.len() <= MOST_NAMES => Some(names),
+            _ => None,
         }
-        let (dx, dy) = ((bx - ax) / length, (by - ay) / length);
-        let at = |along: f64, aside: f64| {
-            let back = self.radius + along;
-            (number(bx - dx * back - dy * aside), number(by - dy * back + dx * aside))
+    }
+
+    /// Where names are.
+    pub(crate) fn taken(&self) -> Vec<Area> {
+        let names = self.node_names().unwrap_or_default().iter().enumerate();
+        let area = |(node, name): (usize, &String)| {
+            let (x, y) = self.point(node);
+            let (left, bottom) = (x + self.radius + 2.0, y - self.radius);
+            [left, bottom - 11.0, left + width(&one_line(name), 11.0), bottom]
         };
-        data.move_to(at(0.0, 0.0)).line_to(at(7.0, 3.0)).line_to(at(7.0, -3.0)).close()
+        names.map(area).collect()
     }
 
     fn names(&self) -> Group {
-        let group = Group::new().set("font-size", 11);
-        let Some(Type::Enum(names)) = self.system.edges.as_ref().map(|edges| &self.system.vars[edges.var].ty)
-        else {
-            return group;
-        };
-        if names.len() > MOST_NAMES {
-            return group;
-        }
-        names.iter().enumerate().fold(group, |group, (node, name)| {
+        let names = self.node_names().unwrap_or_default().iter().enumerate();
+        names.fold(Group::new().set("class", "names"), |group, (node, name)| {
             let (x, y) = self.point(node);
-            let text = Text::new(one_line(name)).set("x", x + self.radius + 2.0).set("y", y - self.radius);
-            group.add(text)
+            let at = (x + self.radius + 2.0, y - self.radius - 2.0);
+            group.add(on_white(&one_line(name), at, 11.0, "#222222"))
         })
     }
 
-    /// A path: its line, a ring at the start, a square at the end, and when it comes to each node first.
-    fn path(&self, aside: f64, index: usize, name: &str, trace: &Trace) -> Group {
-        let (color, dashes) = STROKES[index % STROKES.len()];
-        let nodes = self.nodes(trace);
-        let points: Vec<(f64, f64)> = nodes.iter().map(|node| self.point(*node)).collect();
-        let moved = |(x, y): (f64, f64)| (number(x + aside), number(y - aside));
-        let line: Vec<String> =
-            points.iter().map(|point| moved(*point)).map(|(x, y)| format!("{x},{y}")).collect();
-        let polyline = Polyline::new()
-            .set("points", line.join(" "))
-            .set("fill", "none")
-            .set("stroke", color)
-            .set("stroke-width", 3)
-            .set("stroke-linejoin", "round")
-            .set("stroke-dasharray", if dashes.is_empty() { "none" } else { dashes });
-        let mut group = Group::new().set("class", format!("path {name}")).add(Title::new(name)).add(polyline);
-        let radius = number(self.radius * 0.7);
-        if let (Some(first), Some(last)) = (points.first(), points.last()) {
-            let (x, y) = moved(*first);
-            let ring = Circle::new().set("cx", x).set("cy", y).set("r", radius);
-            group = group.add(ring.set("fill", "#ffffff").set("stroke", color).set("stroke-width", 1.5));
-            group = group.add(end(moved(*last), radius, color, false));
-        }
-        let mut seen = BTreeSet::new();
-        let times = Group::new().set("font-size", 10);
-        group.add(nodes.iter().enumerate().filter(|(_, node)| seen.insert(**node)).fold(
-            times,
-            |group, (time, node)| {
-                let (x, y) = moved(self.point(*node));
-                let text = Text::new(time.to_string()).set("style", format!("fill: {color}"));
-                group.add(text.set("x", x + self.radius + 2.0).set("y", y + self.radius + 8.0))
-            },
-        ))
-    }
-
-    /// The nodes of a trace, one a state.
-    fn nodes(&self, trace: &Trace) -> Vec<usize> {
+    /// The nodes of a trace with their places, one a state.
+    pub(crate) fn places_of(&self, trace: &Trace) -> Vec<(usize, Point)> {
         let Some(edges) = &self.system.edges else { return Vec::new() };
         let node = |value: Option<&Value>| match value {
             Some(Value::Enum(node)) => Some(*node as usize).filter(|node| *node < self.places.len()),
             _ => None,
         };
-        trace.states.iter().filter_map(|state| node(state.get(usize::from(edges.var)))).collect()
+        let nodes = trace.states.iter().filter_map(|state| node(state.get(usize::from(edges.var))));
+        nodes.map(|node| (node, self.point(node))).collect()
     }
+}
 
-    fn legend(&self, traces: &[(usize, &str, &Trace)]) -> Group {
-        let mut group = Group::new().set("font-size", 13);
-        let mut y = (self.high.1 - self.low.1) * self.scale + 2.0 * MARGIN + 8.0;
-        let mut line = |swatch: Group, words: String| {
-            let text = Text::new(words).set("x", MARGIN + 44.0).set("y", y);
-            let moved = swatch.set("transform", format!("translate(0 {})", number(y)));
-            y += LEGEND_LINE;
-            Group::new().add(moved).add(text)
-        };
-        for (index, name, trace) in traces {
-            let (color, dashes) = STROKES[index % STROKES.len()];
-            let stroke = Line::new().set("x1", MARGIN).set("x2", MARGIN + 36.0).set("y1", -4).set("y2", -4);
-            let stroke = stroke.set("stroke", color).set("stroke-width", 3);
-            let stroke = stroke.set("stroke-dasharray", if dashes.is_empty() { "none" } else { dashes });
-            let words = format!("{name} ({} steps)", trace.actions.len());
-            group = group.add(line(Group::new().add(stroke), words));
-        }
-        for (label, _) in &self.marks {
-            let swatch =
-                Rectangle::new().set("x", MARGIN + 20.0).set("y", -12).set("width", 16).set("height", 16);
-            let swatch = swatch.set("fill", fill(label)).set("stroke", "#888888");
-            group = group.add(line(Group::new().add(swatch), (*label).to_owned()));
-        }
-        group
+/// Places for the nodes of a graph that says none: in layers, along its edges. None where it has too many.
+fn laid_out(system: &System) -> Option<Vec<(f64, f64)>> {
+    let edges = system.edges.as_ref()?;
+    let Type::Enum(names) = &system.vars[edges.var].ty else { return None };
+    let pairs: BTreeSet<(u32, u32)> =
+        edges.iter().map(|(from, edge)| (from, edge.to)).filter(|(from, to)| from != to).collect();
+    if names.is_empty() || names.len() > MOST_LAID_OUT || pairs.len() > 4 * MOST_LAID_OUT {
+        return None;
     }
+    // What leads there and back is one line.
+    let pairs: Vec<(u32, u32)> =
+        pairs.iter().copied().filter(|&(a, b)| a < b || !pairs.contains(&(b, a))).collect();
+    let nodes: Vec<(u32, (f64, f64))> = (0..names.len() as u32).map(|node| (node, (1.0, 1.0))).collect();
+    let mut places = vec![(0.0, 0.0); names.len()];
+    let mut left = 0.0;
+    // Its parts that hang together come one by one.
+    for (part, _, _) in rust_sugiyama::from_vertices_and_edges(&nodes, &pairs, &Config::default()) {
+        let least = part.iter().map(|(_, (x, _))| *x).fold(f64::INFINITY, f64::min);
+        let mut right = left;
+        for (node, (x, y)) in part {
+            places[node] = (left + x - least, -y);
+            right = places[node].0.max(right);
+        }
+        left = right + Config::default().vertex_spacing.max(1.0);
+    }
+    Some(places)
 }

@@ -9,22 +9,10 @@ use hyperplan_problem::{Objective, Problem, State, System, Trace, Type, Value};
 pub fn table(problem: &Problem, objective: &Objective, trace: &Trace) -> String {
     let Some(path) = objective.paths.get(trace.path) else { return String::new() };
     let system = &problem.systems[path.system];
-    let mut rows = vec![vec!["time".to_owned(), "action".to_owned()]];
-    // Sums of costs stop where more of them makes no difference.
-    let declared = || system.vars.iter().filter(|var| var.sums.is_none());
-    rows[0].extend(declared().map(|v| v.name.clone()));
-    let in_metres = system.map.as_ref().is_some_and(|map| map.place.is_some());
-    if in_metres {
-        rows[0].extend(["x in m", "y in m"].map(str::to_owned));
-    }
-    for (time, state) in trace.states.iter().enumerate() {
-        let action = trace.actions.get(time).map_or("-", |a| problem.actions[*a].as_str());
-        let mut row = vec![time.to_string(), one_line(action).into_owned()];
-        row.extend(declared().zip(state.iter()).map(|(var, value)| in_words(&var.ty, *value)));
-        if let Some((x, y)) = system.position(state).filter(|_| in_metres) {
-            row.extend([x.to_string(), y.to_string()]);
-        }
-        rows.push(row);
+    let head = std::iter::once("time".to_owned()).chain(columns(system)).collect();
+    let mut rows: Vec<Vec<String>> = vec![head];
+    for time in 0..trace.states.len() {
+        rows.push(std::iter::once(time.to_string()).chain(row(problem, system, trace, time)).collect());
     }
     let columns = rows[0].len();
     let width = |i: usize| rows.iter().filter_map(|r| r.get(i)).map(|c| c.chars().count()).max().unwrap_or(0);
@@ -44,7 +32,33 @@ pub fn table(problem: &Problem, objective: &Objective, trace: &Trace) -> String 
     out
 }
 
-fn in_words(ty: &Type, value: Value) -> String {
+/// What is told of a path at each time: the action taken there, the variables, and where it is, if that is known in metres.
+pub(crate) fn columns(system: &System) -> Vec<String> {
+    // Sums of costs stop where more of them makes no difference.
+    let declared = system.vars.iter().filter(|var| var.sums.is_none()).map(|var| var.name.clone());
+    let metres = in_metres(system).then_some(["x in m", "y in m"].map(str::to_owned));
+    std::iter::once("action".to_owned()).chain(declared).chain(metres.into_iter().flatten()).collect()
+}
+
+/// The same at a time; `-` for the action at the end.
+pub(crate) fn row(problem: &Problem, system: &System, trace: &Trace, time: usize) -> Vec<String> {
+    let state = &trace.states[time];
+    let action = trace.actions.get(time).map_or("-", |a| problem.actions[*a].as_str());
+    let mut row = vec![one_line(action).into_owned()];
+    let declared = system.vars.iter().filter(|var| var.sums.is_none());
+    row.extend(declared.zip(state.iter()).map(|(var, value)| in_words(&var.ty, *value)));
+    if let Some((x, y)) = system.position(state).filter(|_| in_metres(system)) {
+        row.extend([x.to_string(), y.to_string()]);
+    }
+    row
+}
+
+fn in_metres(system: &System) -> bool {
+    system.map.as_ref().is_some_and(|map| map.place.is_some())
+}
+
+/// A value as tables and timelines have it.
+pub(crate) fn in_words(ty: &Type, value: Value) -> String {
     match (value, ty) {
         (Value::Bool(b), _) => b.to_string(),
         (Value::Int(n), _) => n.to_string(),

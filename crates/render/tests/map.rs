@@ -1,7 +1,10 @@
 //! Drawings of small problems, compared as a whole.
 
+mod common;
+
+use common::{problem, scene};
 use hyperplan_problem::answer::{StrategyFile, to_strategy};
-use hyperplan_problem::{NoFiles, Overrides, Problem, Strategy, read};
+use hyperplan_problem::{Overrides, Problem, Strategy, read};
 use hyperplan_render::{Error, Scene, TextStyle, actions_line, svg, table, text_map};
 use hyperplan_syntax::SourceMap;
 
@@ -26,20 +29,8 @@ const WITNESS: &str = r#"{"witness": [
   {"path": "q", "actions": ["right", "up"], "states": [
     {"x": 0, "y": 0}, {"x": 1, "y": 0}, {"x": 1, "y": 0, "crash": true}]}]}"#;
 
-fn problem(text: &str) -> Problem {
-    let lowered = read(&mut SourceMap::new(), "test.hp", text, &NoFiles, &Overrides::none());
-    assert!(!lowered.has_errors(), "{:?}", lowered.diagnostics);
-    lowered.problem
-}
-
 fn strategy(problem: &Problem) -> Strategy {
-    let file = StrategyFile::read_all(WITNESS).expect("JSON").remove(0);
-    let witness = file.witness.expect("given");
-    to_strategy(problem, &problem.objectives[0], &witness).expect("it fits")
-}
-
-fn scene<'a>(problem: &'a Problem, strategy: &'a Strategy) -> Scene<'a> {
-    Scene { problem, objective: problem.objectives.first(), traces: &strategy.traces }
+    common::strategy(problem, WITNESS)
 }
 
 #[test]
@@ -48,7 +39,7 @@ fn letters_are_those_of_the_map() {
         r#"system W = grid { "A~.w" "S..." } { legend 'A' = goal; legend '~' = water; legend 'w' = water; label wet = x >= 1; }
            objective o { exists p. start[p] & F[0,9] goal[p] }"#,
     );
-    let scene = Scene { problem: &problem, objective: None, traces: &[] };
+    let scene = Scene { problem: &problem, objective: None, traces: &[], note: "" };
     let text = text_map(scene, TextStyle::default()).expect("a map");
     let expected = "\
 1  A  ~  W  ~
@@ -65,7 +56,7 @@ fn a_map_for_each_path() {
     let strategy = strategy(&problem);
     let text = text_map(scene(&problem, &strategy), TextStyle::default()).expect("a map");
     let expected = "\
-p (6 steps):
+p (5 steps):
 2  H→ H→ G*
 1  ↑  #  .
 0  S↑ S← .
@@ -99,30 +90,13 @@ time  action  x  y  crash
 }
 
 #[test]
-fn svg_has_paths_marks_and_legend() {
-    let problem = problem(ROOM);
-    let strategy = strategy(&problem);
-    let drawn = svg(scene(&problem, &strategy)).expect("a map");
-    assert_eq!(drawn, svg(scene(&problem, &strategy)).expect("a map"), "the same every time");
-    assert!(drawn.starts_with("<svg ") && drawn.trim_end().ends_with("</svg>"));
-    assert_eq!(drawn.matches("<polyline").count(), 2);
-    for part in
-        ["class=\"start\"", "class=\"goal\"", "class=\"high\"", "p (6 steps)", "q (2 steps)", "S start"]
-    {
-        assert!(drawn.contains(part), "{part}");
-    }
-    let points: Vec<&str> = drawn.match_indices("points=\"").map(|(i, _)| &drawn[i..i + 20]).collect();
-    assert_ne!(points[0], points[1], "paths are drawn beside each other");
-}
-
-#[test]
 fn coordinates_make_a_map() {
     let problem = problem(
         "system S { state x: -1..1, y: 5..6, fast: bool; action go; on go { x' = x + 1; }
            label mark = x == 0 & y == 6; label quick = fast; }
          objective o { exists p. mark[p] }",
     );
-    let scene = Scene { problem: &problem, objective: None, traces: &[] };
+    let scene = Scene { problem: &problem, objective: None, traces: &[], note: "" };
     let text = text_map(scene, TextStyle::default()).expect("x and y are integers");
     // `quick` depends on more than the place, and is left out.
     assert_eq!(text, "6  .  M  .\n5  .  .  .\n   -1 0  1\nM mark\n");
@@ -131,10 +105,10 @@ fn coordinates_make_a_map() {
 #[test]
 fn other_systems_are_refused() {
     let problem = problem("system S { state n: 0..3; } objective o { exists p. n[p] == 0 }");
-    let scene = Scene { problem: &problem, objective: None, traces: &[] };
+    let scene = Scene { problem: &problem, objective: None, traces: &[], note: "" };
     let error = Error::Unsupported { system: "S".to_owned() };
     assert_eq!(svg(scene), Err(error.clone()));
-    assert_eq!(text_map(scene, TextStyle::default()), Err(error));
+    assert_eq!(text_map(scene, TextStyle::default()), Err(error), "without a path there is nothing to tell");
 }
 
 #[test]
@@ -142,7 +116,7 @@ fn wide_maps_are_narrow() {
     let row = ".".repeat(30);
     let text = format!("system W = grid {{ \"{row}\" }} {{}} objective o {{ exists p. x[p] == 0 }}");
     let problem = problem(&text);
-    let scene = Scene { problem: &problem, objective: None, traces: &[] };
+    let scene = Scene { problem: &problem, objective: None, traces: &[], note: "" };
     let drawn = text_map(scene, TextStyle::default()).expect("a map");
     assert_eq!(drawn, format!("0  {row}\n   0         10        20\n"));
 }
@@ -188,8 +162,51 @@ fn roadmaps_are_drawn_where_they_lie() {
     let strategy = to_strategy(&problem, &problem.objectives[0], &witness).expect("it fits");
     let drawn = svg(scene(&problem, &strategy)).expect("a roadmap");
     // Two units are 900 points; the second node is to the right and above.
-    assert!(drawn.contains("points=\"36,486 936,36\""), "{drawn}");
+    assert!(drawn.contains("M36,486 936,36"), "{drawn}");
     assert!(drawn.contains("b&lt;") && drawn.contains("goal"), "{drawn}");
     let text = text_map(scene(&problem, &strategy), TextStyle::default()).expect("a table");
     assert!(text.contains("time  action  node"), "{text}");
+}
+
+#[test]
+fn what_nobody_has_seen_is_no_obstacle() {
+    let files = |path: &str| match path {
+        "m.yaml" => Ok(b"image: m.pgm".to_vec()),
+        "m.pgm" => Ok(b"P2 3 1 255 255 150 0".to_vec()),
+        _ => Err("no such file".to_owned()),
+    };
+    let drawn = |items: &str| {
+        let text = format!("system W = grid(\"m.yaml\") {{ {items} }}");
+        let lowered = read(&mut SourceMap::new(), "test.hp", &text, &files, &Overrides::none());
+        assert!(!lowered.has_errors(), "{:?}", lowered.diagnostics);
+        let scene = Scene { problem: &lowered.problem, objective: None, traces: &[], note: "" };
+        (text_map(scene, TextStyle::default()).expect("a map"), svg(scene).expect("a map"))
+    };
+    let (text, picture) = drawn("");
+    assert_eq!(text, "0  .  ░  #\n   0  1  2\n░ unknown\n");
+    assert!(picture.contains("class=\"unknown\"") && picture.contains("class=\"obstacles\""), "{picture}");
+    let (text, picture) = drawn("unknown free;");
+    assert_eq!(text, "0  .  .  #\n   0  1  2\n", "the robot may go there");
+    assert!(picture.contains("class=\"unknown\""), "{picture}");
+}
+
+#[test]
+fn on_wide_maps_start_and_goal_stay() {
+    let problem = problem(&format!(
+        "system W = grid {{ \"S{}G\" }} {{}} objective o {{ exists p. x[p] == 0 }}",
+        ".".repeat(28)
+    ));
+    let xs: Vec<usize> = [0, 1, 2, 1, 2].into_iter().chain(3..30).collect();
+    let states: Vec<String> = xs.iter().map(|x| format!("{{\"x\": {x}, \"y\": 0}}")).collect();
+    let actions: Vec<&str> =
+        xs.windows(2).map(|two| if two[0] < two[1] { "\"right\"" } else { "\"left\"" }).collect();
+    let (states, actions) = (states.join(","), actions.join(","));
+    let witness =
+        format!("{{\"witness\": [{{\"path\": \"p\", \"actions\": [{actions}], \"states\": [{states}]}}]}}");
+    let strategy = common::strategy(&problem, &witness);
+    let text = text_map(scene(&problem, &strategy), TextStyle::default()).expect("a map");
+    let row = format!("0  S╬╬{}G\n", "→".repeat(26));
+    assert!(text.contains(&row) && text.contains("╬ more than once"), "{text}");
+    let colored = text_map(scene(&problem, &strategy), TextStyle { color: true }).expect("a map");
+    assert!(colored.contains("\u{1b}[1;36mS\u{1b}[0m"), "{colored}");
 }

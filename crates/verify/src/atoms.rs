@@ -43,7 +43,7 @@ impl Atom {
 }
 
 /// A formula and its negation.
-type Pair = (ResidualId, ResidualId);
+pub(crate) type Pair = (ResidualId, ResidualId);
 
 struct Translation<'a> {
     residuals: &'a mut Residuals,
@@ -55,15 +55,24 @@ pub(crate) fn translate(
     objective: &Objective,
     residuals: &mut Residuals,
 ) -> Result<(ResidualId, TiVec<AtomId, Atom>), Error> {
+    let (done, atoms) = translated(objective, residuals)?;
+    let root =
+        done.last().map(|pair| pair.0).ok_or(Error::Malformed { what: "an objective has no formula" })?;
+    Ok((root, atoms))
+}
+
+/// Every part of the objective's formula, and its negation, as residuals that are read from position 0 on, and all atoms.
+pub(crate) fn translated(
+    objective: &Objective,
+    residuals: &mut Residuals,
+) -> Result<(Vec<Pair>, TiVec<AtomId, Atom>), Error> {
     let mut t = Translation { residuals, atoms: TiVec::new() };
     let mut done: Vec<Pair> = Vec::with_capacity(objective.formula.nodes.len());
     for node in &objective.formula.nodes {
         let pair = t.node(objective.mode, node, &done)?;
         done.push(pair);
     }
-    let root =
-        done.last().map(|pair| pair.0).ok_or(Error::Malformed { what: "an objective has no formula" })?;
-    Ok((root, t.atoms))
+    Ok((done, t.atoms))
 }
 
 impl Translation<'_> {

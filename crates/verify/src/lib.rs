@@ -66,6 +66,7 @@ mod joint;
 mod layer;
 mod level;
 mod outcomes;
+mod parts;
 mod progress;
 mod recent;
 mod report;
@@ -79,12 +80,15 @@ mod step;
 mod tests;
 mod valuation;
 mod value;
+mod worst;
 
 pub use check::{check, decide};
 pub use cost::cost;
 pub use follow::{Open, complete};
 pub use outcomes::holds_for_all_outcomes;
+pub use parts::{holds_at, progress_of};
 pub use report::{Budget, Check, Defeat, Error, Reached};
+pub use worst::{Beginning, starts, worst};
 
 #[cfg(doc)]
 use hyperplan_problem::Mode;

@@ -91,7 +91,7 @@ fn pinned(problem: &Problem, objective: &Objective, strategy: &Strategy, of: &[P
     pinned
 }
 
-fn is(path: PathId, var: VarId, value: Value) -> Expr<PathLeaf> {
+pub(crate) fn is(path: PathId, var: VarId, value: Value) -> Expr<PathLeaf> {
     let leaf = Expr::Leaf(PathLeaf::State(path, Leaf::Var(var)));
     match value {
         Value::Bool(true) => leaf,
@@ -101,7 +101,7 @@ fn is(path: PathId, var: VarId, value: Value) -> Expr<PathLeaf> {
 }
 
 /// That some of these are false at a time.
-fn differs_at(objective: &mut Objective, time: usize, agrees: Vec<Expr<PathLeaf>>) -> FormulaId {
+pub(crate) fn differs_at(objective: &mut Objective, time: usize, agrees: Vec<Expr<PathLeaf>>) -> FormulaId {
     let span = objective.span;
     let formula = &mut objective.formula;
     let atom = formula.push(Node::Atom(Expr::Not(Box::new(Expr::And(agrees)))), span);

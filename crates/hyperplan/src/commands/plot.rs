@@ -1,4 +1,4 @@
-//! `hyperplan plot`: the map with the paths of a strategy.
+//! `hyperplan plot`: the map with the paths of a strategy, and of all that it has to cope with the worst.
 
 use crate::args;
 use crate::config;
@@ -7,11 +7,12 @@ use crate::files::check_writable;
 use crate::guard;
 use crate::load::{Given, Loaded};
 use crate::output::Output;
-use crate::report::{Picture, write_picture};
-use hyperplan_render::{Scene, TextStyle, text_map};
+use crate::pictures::{Picture, Subject};
+use hyperplan_render::TextStyle;
 
 pub(crate) fn run(args: &args::Plot, out: &mut Output) -> Result {
     let picture = args.output.as_deref().map(Picture::new).transpose()?;
+    let picture = if args.animate { picture.map(Picture::animated).transpose()? } else { picture };
     if let Some(path) = &args.output {
         check_writable(path)?;
     }
@@ -33,15 +34,21 @@ pub(crate) fn run(args: &args::Plot, out: &mut Output) -> Result {
         (None, Some(name)) => loaded.selected(Some(name), false)?.first().copied(),
         (None, None) => None,
     };
-    let traces = strategies.first().map_or(&[][..], |(_, strategy)| &strategy.traces);
+    if !args.path.is_empty() && strategies.is_empty() {
+        return Err(Failure::input("--path chooses paths of a strategy; give one"));
+    }
     guard::doing("drawing");
-    let scene = Scene { problem: &loaded.problem, objective, traces };
-    match picture {
-        Some(picture) => write_picture(scene, &picture)?,
-        None => {
-            let text = text_map(scene, TextStyle { color: out.color }).map_err(Failure::input)?;
-            out.write(|w| w.write_all(text.as_bytes()))?;
-        }
+    let strategy = strategies.first().map(|(_, strategy)| strategy);
+    let subject = Subject { problem: &loaded.problem, objective, strategy, named: &args.path };
+    if let Some(picture) = &picture {
+        subject.draw(picture)?;
+    }
+    if let Some(folder) = &args.frames {
+        subject.frames(folder, picture.as_ref().is_some_and(Picture::is_svg))?;
+    }
+    if picture.is_none() && args.frames.is_none() {
+        let text = subject.text(TextStyle { color: out.color })?;
+        out.write(|w| w.write_all(text.as_bytes()))?;
     }
     Ok(Exit::Good)
 }

@@ -347,6 +347,7 @@ mod tests {
                 width: 3,
                 height: 1,
                 obstacles: Vec::new(),
+                unknown: Vec::new(),
                 letters: Vec::new(),
                 x: VarId(0),
                 y: VarId(0),

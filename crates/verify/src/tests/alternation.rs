@@ -18,14 +18,14 @@ fn an_inner_path_may_know_the_future_of_an_outer_one() {
     assert_eq!(decide(&guess, &guess.objectives[0], &Budget::default()), Ok(Some(false)));
 }
 
-struct Random(hyperplan_random::Random);
+pub(crate) struct Random(pub(crate) hyperplan_random::Random);
 
 impl Random {
-    fn below(&mut self, n: u32) -> u32 {
+    pub(crate) fn below(&mut self, n: u32) -> u32 {
         self.0.bound(n)
     }
 
-    fn formula(&mut self, paths: u32, depth: u32, look: u32) -> F {
+    pub(crate) fn formula(&mut self, paths: u32, depth: u32, look: u32) -> F {
         let p = self.below(paths);
         let q = self.below(paths);
         if depth == 0 {
@@ -69,7 +69,7 @@ impl Random {
         }
     }
 
-    fn edges(&mut self) -> Vec<(i64, u32, i64)> {
+    pub(crate) fn edges(&mut self) -> Vec<(i64, u32, i64)> {
         let count = 3 + self.below(4);
         let mut edges = Vec::new();
         for _ in 0..count {
@@ -81,7 +81,7 @@ impl Random {
     }
 }
 
-fn as_trace(index: usize, path: &Path) -> hyperplan_problem::Trace {
+pub(crate) fn as_trace(index: usize, path: &Path) -> hyperplan_problem::Trace {
     let states: Vec<i64> = path.iter().map(|p| p.0).collect();
     let actions: Vec<u32> = path.iter().filter_map(|p| p.1).collect();
     trace(u32::try_from(index).unwrap(), &states, &actions)

@@ -4,6 +4,8 @@ mod alternation;
 mod build;
 mod naive;
 mod operators;
+mod parts;
 mod paths;
 mod scale;
 mod strategies;
+mod worst;

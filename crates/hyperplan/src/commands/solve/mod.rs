@@ -13,9 +13,10 @@ use crate::load::Loaded;
 use crate::nusmv;
 use crate::output::Output;
 use crate::parameter::{Parameter, Searched};
+use crate::pictures::{Picture, Subject};
 use crate::plans;
 use crate::proof::{Prover, Said};
-use crate::report::{Picture, json, write_picture};
+use crate::report::json;
 use crate::waiting::Waiting;
 use crate::wish::Wish;
 use hyperplan_outlet::one_line;
@@ -102,8 +103,8 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
         }
         found.print(args.format, (verbose, quiet), out)?;
         outcome.notes.iter().for_each(|note| out.remark(format_args!("note: {}", explain.note(note))));
-        if let (Some(picture), Some(_)) = (&pictures[index], &outcome.witness) {
-            drawn = drawn.and(write_picture(found.scene(), picture));
+        if let (Some(picture), Some(strategy)) = (&pictures[index], &outcome.witness) {
+            drawn = drawn.and(found.draw(strategy, picture));
         }
         worst = worst.max(status(&answer));
     }
@@ -371,7 +372,17 @@ struct Found<'a> {
 impl<'a> Found<'a> {
     fn scene(&self) -> Scene<'a> {
         let traces = self.outcome.witness.as_ref().map_or(&[][..], |s| &s.traces);
-        Scene { problem: &self.loaded.problem, objective: Some(self.objective), traces }
+        Scene { problem: &self.loaded.problem, objective: Some(self.objective), traces, note: "" }
+    }
+
+    fn draw(&self, strategy: &Strategy, picture: &Picture) -> Result<()> {
+        let subject = Subject {
+            problem: &self.loaded.problem,
+            objective: Some(self.objective),
+            strategy: Some(strategy),
+            named: &[],
+        };
+        subject.draw(picture)
     }
 
     /// The paths as others want them: nothing of what comes after they were absorbed.

@@ -34,6 +34,8 @@ pub(crate) struct GridMap {
     pub(crate) obstacles: Vec<Cell>,
     /// Labels that letters carry, in order of first mention.
     pub(crate) labels: Vec<Lettered>,
+    /// Cells that nobody has seen, free or not; sorted.
+    pub(crate) unknown: Vec<Cell>,
     /// Where it lies, if that was said.
     pub(crate) place: Option<Place>,
 }

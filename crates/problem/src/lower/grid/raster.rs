@@ -2,6 +2,7 @@
 
 use super::{Cell, GridMap, Lettered};
 use crate::place::Place;
+use std::collections::BTreeSet;
 
 /// What a cell is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +22,8 @@ pub(crate) struct Raster {
     pub(crate) cells: Vec<Occupancy>,
     /// Labels of free cells; none has a cell twice.
     pub(crate) labels: Vec<Lettered>,
+    /// Cells that nobody has seen, whatever they were taken for; sorted.
+    pub(crate) unknown: Vec<Cell>,
     /// Where it lies, if that was said.
     pub(crate) place: Option<Place>,
 }
@@ -29,7 +32,7 @@ impl Raster {
     /// A map of free cells.
     pub(crate) fn new(width: u32, height: u32) -> Raster {
         let cells = vec![Occupancy::Free; width as usize * height as usize];
-        Raster { width, height, cells, labels: Vec::new(), place: None }
+        Raster { width, height, cells, labels: Vec::new(), unknown: Vec::new(), place: None }
     }
 
     pub(crate) fn index(&self, (x, y): Cell) -> usize {
@@ -43,6 +46,8 @@ impl Raster {
 
     /// What unknown cells are taken for.
     pub(crate) fn settle_unknown(&mut self, as_what: Occupancy) {
+        let columns = (0..self.width).flat_map(|x| (0..self.height).map(move |y| (x, y)));
+        self.unknown = columns.filter(|cell| self.cells[self.index(*cell)] == Occupancy::Unknown).collect();
         self.cells.iter_mut().filter(|cell| **cell == Occupancy::Unknown).for_each(|cell| *cell = as_what);
     }
 
@@ -103,11 +108,26 @@ impl Raster {
                 }
             }
         }
+        scaled.unknown = self.scaled_unknown(by);
         let labels = std::mem::take(&mut self.labels);
         scaled.labels = relabelled(labels, |(x, y)| Some((x / by, y / by)));
         scaled.place = self.place.map(|place| place.scaled(by));
         *self = scaled;
         self.drop_covered_labels();
+    }
+
+    /// The larger cells in which there is something that nobody has seen, but no obstacle that somebody has.
+    fn scaled_unknown(&self, by: u32) -> Vec<Cell> {
+        if self.unknown.is_empty() {
+            return Vec::new();
+        }
+        let seen = |cell: Cell| self.unknown.binary_search(&cell).is_err();
+        let cells = (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x, y)));
+        let obstacles =
+            cells.filter(|&cell| self.cells[self.index(cell)] == Occupancy::Obstacle && seen(cell));
+        let known: BTreeSet<Cell> = obstacles.map(|(x, y)| (x / by, y / by)).collect();
+        let unknown: BTreeSet<Cell> = self.unknown.iter().map(|(x, y)| (x / by, y / by)).collect();
+        unknown.difference(&known).copied().collect()
     }
 
     /// The part between two cells, both included and on the map; its lower left cell is the first.
@@ -121,6 +141,7 @@ impl Raster {
         let inside = |(x, y): Cell| (first.0..=last.0).contains(&x) && (first.1..=last.1).contains(&y);
         let moved = |cell: Cell| inside(cell).then(|| (cell.0 - first.0, cell.1 - first.1));
         cropped.labels = relabelled(std::mem::take(&mut self.labels), moved);
+        cropped.unknown = self.unknown.iter().copied().filter_map(moved).collect();
         cropped.place = self.place.map(|place| place.moved(first));
         *self = cropped;
     }
@@ -139,7 +160,7 @@ impl Raster {
         let (width, height) = (self.width, self.height);
         let columns = (0..width).flat_map(|x| (0..height).map(move |y| (x, y)));
         let obstacles = columns.filter(|cell| self.cells[self.index(*cell)] != Occupancy::Free).collect();
-        GridMap { width, height, obstacles, labels: self.labels, place: self.place }
+        GridMap { width, height, obstacles, labels: self.labels, unknown: self.unknown, place: self.place }
     }
 }
 

@@ -134,6 +134,7 @@ pub(crate) fn base(map: &GridMap, rules: &Rules, actions: &mut Actions, span: Sp
             width: map.width,
             height: map.height,
             obstacles: map.obstacles.clone(),
+            unknown: map.unknown.clone(),
             letters: map
                 .labels
                 .iter()

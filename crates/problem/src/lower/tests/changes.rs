@@ -370,3 +370,18 @@ fn maps_that_are_too_large_can_be_cut() {
     let scaled = map("system W = grid(\"m.txt\") { scale 10; }", files);
     assert_eq!((scaled.width, scaled.height), (210, 210));
 }
+
+#[test]
+fn what_nobody_has_seen_is_known() {
+    // Free, unknown, occupied, free, unknown, unknown, occupied, unknown.
+    let gray = png(png::ColorType::Grayscale, 8, 1, &[255, 150, 0, 255, 150, 150, 0, 150]);
+    let unknown = |items: &str| {
+        let files: Files<'_> = &[("m.yaml", b"image: m.png"), ("m.png", &gray)];
+        let map = map(&format!("system W = grid(\"m.yaml\") {{ {items} }}"), files);
+        map.unknown.into_iter().map(|(x, _)| x).collect::<Vec<u32>>()
+    };
+    assert_eq!(unknown(""), [1, 4, 5, 7]);
+    assert_eq!(unknown("unknown free;"), [1, 4, 5, 7], "whatever it is taken for");
+    assert_eq!(unknown("unknown free; scale 2;"), [0, 2], "where there is an obstacle, that is known");
+    assert_eq!(unknown("unknown free; crop 4..7, 0..0;"), [0, 1, 3]);
+}
