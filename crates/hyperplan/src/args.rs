@@ -2,10 +2,12 @@
 
 mod certify;
 mod compare;
+mod explain;
 mod verify;
 
 pub(crate) use certify::Certify;
 pub(crate) use compare::{Asked, Compare, Settings, Shard};
+pub(crate) use explain::Explain;
 pub(crate) use verify::Verify;
 
 use crate::foreign::Foreign;
@@ -163,6 +165,8 @@ pub(crate) enum Command {
     Check(Check),
     /// Check a strategy without any solver
     Verify(Verify),
+    /// Say why an objective is unrealizable, has a counterexample, or why a strategy fails
+    Explain(Explain),
     /// Check certificates that there is no strategy, without any solver
     Certify(Certify),
     /// Draw the map, with the paths of a strategy

@@ -3,7 +3,7 @@
 //! [`solve`] decides an objective: quantifiers are handed to the solver, expanded into finitely many cases, or
 //! decided by counterexamples; a strategy is verified by `hyperplan-verify`, which shares nothing with the encoding,
 //! before it is returned. [`minimize()`] finds the least value of a constant with which it can be had, [`cheapest()`] the
-//! strategy that costs least. [`cubes()`] cuts an objective
+//! strategy that costs least. [`mod@explain`] says why there is none. [`cubes()`] cuts an objective
 //! into cases for searches side by side. [`emit`] gives the query as a benchmark instead. [`lint`] and [`lint_systems`] look for what is probably not meant.
 
 mod cegis;
@@ -15,6 +15,7 @@ mod decide;
 mod direct;
 mod emit;
 mod evidence;
+pub mod explain;
 mod fact;
 mod lasting;
 mod lint;

@@ -80,7 +80,7 @@ mod tests;
 mod valuation;
 mod value;
 
-pub use check::{check, decide};
+pub use check::{check, decide, settled};
 pub use cost::cost;
 pub use follow::{Open, complete};
 pub use outcomes::holds_for_all_outcomes;
