@@ -2,12 +2,14 @@
 //! so much more time is enough, and less is not; some choices of the other player defeat every candidate. And the parts that
 //! fail on a candidate or a counterexample fail.
 
-use hyperplan_plan::explain::{Choice, Explanation, Later, Opponents, Scope, explain, longer, parts};
+use hyperplan_plan::explain::{
+    Candidate, Choice, Explanation, Later, Opponents, Scope, explain, longer, parts,
+};
 use hyperplan_plan::{Config, Outcome, Verdict, solve};
 use hyperplan_problem::{Problem as Typed, Value};
 use hyperplan_solver::{Deadline, Spec};
-use hyperplan_tests::brute::Brute;
-use hyperplan_tests::judge::lowered;
+use hyperplan_tests::brute::{Brute, Path};
+use hyperplan_tests::judge::{lowered, path};
 use hyperplan_tests::model::{Atom, Formula, Problem};
 use hyperplan_tests::random::{self, Random};
 use hyperplan_tests::{number, say};
@@ -23,6 +25,7 @@ struct Seen {
     games: u32,
     least: u32,
     opponents: u32,
+    candidates: u32,
     failures: u32,
 }
 
@@ -103,13 +106,13 @@ fn reasons_are_reasons() {
         let about = format!("seed {seed}\n{problem}\n{found:#?}");
         judge(&problem, &typed, (&found, &outcome), &about, &mut seen);
     }
-    let Seen { cores, games, least, opponents, failures } = seen;
+    let Seen { cores, games, least, opponents, candidates, failures } = seen;
     say(&format!(
-        "seeds {first}..{}: {cores} cores, {games} of them of games, {least} least times, {opponents} opponents, {failures} failures",
+        "seeds {first}..{}: {cores} cores, {games} of them of games, {least} least times, {opponents} opponents, {candidates} candidates, {failures} failures",
         first + cases
     ));
     assert!(
-        cores > 50 && games > 5 && least > 5 && opponents > 10 && failures > 30,
+        cores > 50 && games > 5 && least > 5 && opponents > 10 && candidates > 10 && failures > 30,
         "too little for the test to mean something"
     );
 }
@@ -140,6 +143,9 @@ fn judge(
     }
     if let Some(opponents) = &found.opponents {
         seen.opponents += u32::from(defeat_all(problem, &own, opponents, about));
+    }
+    if let Some(candidate) = &found.candidate {
+        seen.candidates += u32::from(wins(problem, typed, &own, candidate, about));
     }
     let candidate = found.candidate.as_ref().map(|candidate| &candidate.failure);
     for failure in candidate.into_iter().chain(&found.counterexample) {
@@ -226,6 +232,29 @@ fn defeat_all(problem: &Problem, own: &[Formula], found: &Opponents, about: &str
         let rest = [&all[..out], &all[out + 1..]].concat();
         assert_eq!(of(&rest), Some(true), "{out} can be left out of {all:?}: {about}");
     }
+    true
+}
+
+/// A candidate wins against all paths that make none of the choices it was spared; whether that was checked.
+fn wins(problem: &Problem, typed: &Typed, own: &[Formula], candidate: &Candidate, about: &str) -> bool {
+    let leading = problem.exists.iter().take_while(|&&exists| exists).count();
+    let Some(spared) = &candidate.spared else { return false };
+    let excuse = |choice: &Choice| match choice {
+        Choice::Start(path, state) => is_state(problem, usize::from(*path), state),
+        Choice::Replaced(path, from, step) => {
+            let same = atom(Atom::SameAction(usize::from(*from), usize::from(*path)));
+            let other = Formula::Not(Box::new(same));
+            (0..=*step).fold(other, |later, _| Formula::Next(Box::new(later)))
+        }
+    };
+    let (mut parts, others): (Vec<Formula>, Vec<Formula>) =
+        own.iter().cloned().partition(|part| reads_only(part, leading));
+    parts.push(Formula::Or(spared.iter().map(excuse).chain([Formula::And(others)]).collect()));
+    let weaker = Problem { formula: Formula::And(parts), ..problem.clone() };
+    let Some(brute) = Brute::new(&weaker, MOST) else { return false };
+    let strategy = &candidate.strategy;
+    let paths: Vec<Path> = strategy.traces.iter().map(|t| path(&problem.system, typed, t)).collect();
+    assert_eq!(brute.refute(&paths, true), None, "the candidate does not win: {about}");
     true
 }
 

@@ -235,6 +235,9 @@ pub(crate) struct Solve {
     /// Prints the strategy unchecked
     #[arg(long)]
     pub(crate) no_verify: bool,
+    /// Prints the strategy that was found first, detours and all
+    #[arg(long)]
+    pub(crate) first: bool,
     /// Searches in N ways at once, each in a process with these limits: modes of quantifiers, encodings, solvers, seeds, of which
     /// only those vary that are not given; the first verified answer ends the others
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), conflicts_with = "cubes")]

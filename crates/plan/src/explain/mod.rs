@@ -17,6 +17,7 @@ mod wall;
 pub use failure::{Difference, Failing, Failure, Judged};
 pub use longer::{Later, Longer, Time, longer};
 pub use opponent::{Choice, Opponents};
+pub(crate) use part::as_long;
 pub use part::parts;
 pub use wall::Wall;
 
@@ -25,7 +26,7 @@ use crate::fact::{Error, Note};
 use crate::lint::demand;
 use crate::lint::question;
 use asker::{Asker, needed};
-use hyperplan_problem::{FormulaId, Mode, Objective, PathId, Problem, Strategy, extended};
+use hyperplan_problem::{FormulaId, Objective, PathId, Problem, Strategy};
 use hyperplan_syntax::Diagnostic;
 use hyperplan_verify as verify;
 use opponent::Best;
@@ -58,8 +59,8 @@ pub struct Core {
 pub struct Candidate {
     /// The paths.
     pub strategy: Strategy,
-    /// So many choices of the other player it does not win against, at most; `None` where these were not told apart.
-    pub spared: Option<usize>,
+    /// It wins against all paths of the other player that make none of these choices; `None` where these were not told apart.
+    pub spared: Option<Vec<Choice>>,
     /// How it fails.
     pub failure: Failure,
 }
@@ -237,13 +238,13 @@ impl<'a> Explainer<'a> {
             self.shrink(self.parts.clone(), Scope::Leading)?;
             return Ok(None);
         }
-        match self.asker.ask(&self.extended(&self.question(&alone, Scope::Leading)))? {
+        match self.asker.ask(&self.as_long(&self.question(&alone, Scope::Leading)))? {
             Ok(outcome) if outcome.verdict == Verdict::Unrealizable => {
                 self.shrink(alone, Scope::Leading)?;
                 return Ok(None);
             }
             Ok(outcome) => {
-                best = outcome.witness.map(|strategy| Best { strategy, spared: usize::MAX });
+                best = outcome.witness.map(|strategy| Best { strategy, spared: None });
             }
             Err(_) => self.found.open.push(Open::Alone),
         }
@@ -284,20 +285,8 @@ impl<'a> Explainer<'a> {
         demand::paths(&self.objective.formula, part).iter().all(|path| paths.contains(path))
     }
 
-    /// The question with paths as long as the whole objective has them, so that its strategies are of that.
-    fn extended(&self, question: &Objective) -> Objective {
-        if matches!(self.objective.mode, Mode::Within(_)) {
-            return question.clone();
-        }
-        let horizons = hyperplan_horizon::horizons(self.objective);
-        let mut question = question.clone();
-        for path in self.objective.leading_block() {
-            let steps = horizons[path].steps.and_then(|steps| u32::try_from(steps).ok());
-            if let Some(steps) = steps {
-                question = extended(self.asker.problem, &question, &[path], steps);
-            }
-        }
-        question
+    fn as_long(&self, question: &Objective) -> Objective {
+        part::as_long(self.asker.problem, self.objective, question)
     }
 
     /// What `check` says of parts that are demanded of every path.
@@ -327,7 +316,6 @@ impl<'a> Explainer<'a> {
         };
         match failure::judge(&self.asker, self.objective, &strategy)? {
             Ok(Judged::Fails(failure)) => {
-                let spared = Some(spared).filter(|spared| *spared < usize::MAX);
                 self.found.candidate = Some(Candidate { strategy, spared, failure: *failure });
             }
             Ok(Judged::TooLarge) => self.found.open.push(Open::Candidate),

@@ -44,10 +44,11 @@ pub struct Opponents {
     pub steps: Vec<PathId>,
 }
 
-/// A strategy that wins against many choices of the other player, and how many it was spared.
+/// A strategy that wins against paths of the other player that make none of some choices; `None` where these were not told
+/// apart.
 pub(super) struct Best {
     pub(super) strategy: Strategy,
-    pub(super) spared: usize,
+    pub(super) spared: Option<Vec<Choice>>,
 }
 
 /// Leaves out what is not needed to defeat every candidate of an objective that has no strategy.
@@ -75,11 +76,15 @@ pub(super) fn opponents(
     let mut without = |kept: &[Choice]| {
         let left_out: Vec<Choice> = all.iter().filter(|choice| !kept.contains(choice)).cloned().collect();
         let Ok(outcome) = asker.ask(&without(asker, objective, &left_out))? else { return Ok(None) };
-        let spared = left_out.len();
-        if let Some(strategy) =
-            outcome.witness.filter(|_| best.as_ref().is_none_or(|best| spared < best.spared))
+        // Without any start of some path there is nobody to win against.
+        let begins =
+            |path: &PathId| kept.iter().any(|choice| matches!(choice, Choice::Start(own, _) if own == path));
+        let better = |best: &Best| best.spared.as_ref().is_none_or(|spared| left_out.len() < spared.len());
+        if let Some(strategy) = outcome.witness
+            && block.iter().all(begins)
+            && best.as_ref().is_none_or(better)
         {
-            *best = Some(Best { strategy, spared });
+            *best = Some(Best { strategy, spared: Some(left_out) });
         }
         Ok(Some(outcome.verdict == Verdict::Unrealizable))
     };

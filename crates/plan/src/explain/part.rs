@@ -2,8 +2,8 @@
 
 use crate::lint::rewrite::{Builder, Replaced};
 use hyperplan_problem::{
-    Comparison, Expr, Formula, FormulaId, Interval, Leaf, Node, Objective, PathId, PathLeaf, Problem, State,
-    Trace, Value, VarId,
+    Comparison, Expr, Formula, FormulaId, Interval, Leaf, Mode, Node, Objective, PathId, PathLeaf, Problem,
+    State, Trace, Value, VarId, extended,
 };
 use hyperplan_syntax::Span;
 use std::collections::BTreeSet;
@@ -44,6 +44,21 @@ fn constant(value: bool, span: Span) -> Formula {
 /// The objective without all paths behind these, of which the formula must read none.
 pub(super) fn first_paths(objective: &Objective, count: usize) -> Objective {
     Objective { paths: objective.paths.iter().take(count).cloned().collect(), ..objective.clone() }
+}
+
+/// A question with leading paths as long as an objective has them, so that its strategies are of that.
+pub(crate) fn as_long(problem: &Problem, objective: &Objective, question: &Objective) -> Objective {
+    let mut question = question.clone();
+    if matches!(objective.mode, Mode::Within(_)) {
+        return question;
+    }
+    let horizons = hyperplan_horizon::horizons(objective);
+    for path in objective.leading_block() {
+        if let Some(steps) = horizons[path].steps.and_then(|steps| u32::try_from(steps).ok()) {
+            question = extended(problem, &question, &[path], steps);
+        }
+    }
+    question
 }
 
 /// The objective with paths bound to traces.

@@ -78,7 +78,8 @@ struct JsonLater {
 #[derive(Serialize)]
 struct JsonCandidate {
     witness: Vec<WitnessPath>,
-    spared: Option<usize>,
+    /// It wins unless the other player makes one of these.
+    spared: Option<JsonChoices>,
     failure: JsonFailure,
 }
 
@@ -118,6 +119,13 @@ struct JsonOpponents {
     minimal: bool,
     /// So many choices there were.
     of: usize,
+    #[serde(flatten)]
+    choices: JsonChoices,
+}
+
+/// What the other player may choose.
+#[derive(Serialize)]
+struct JsonChoices {
     starts: Vec<JsonStart>,
     replaced: Vec<JsonStep>,
 }
@@ -249,7 +257,7 @@ impl Own<'_> {
     fn candidate(&self, candidate: &Candidate) -> JsonCandidate {
         JsonCandidate {
             witness: self.witness(&candidate.strategy),
-            spared: candidate.spared,
+            spared: candidate.spared.as_deref().map(|choices| self.choices(choices)),
             failure: self.failure(&candidate.failure),
         }
     }
@@ -283,8 +291,13 @@ impl Own<'_> {
     }
 
     fn opponents(&self, opponents: &Opponents) -> JsonOpponents {
+        let choices = self.choices(&opponents.choices);
+        JsonOpponents { minimal: opponents.minimal, of: opponents.of, choices }
+    }
+
+    fn choices(&self, choices: &[Choice]) -> JsonChoices {
         let (mut starts, mut replaced) = (Vec::new(), Vec::new());
-        for choice in &opponents.choices {
+        for choice in choices {
             match choice {
                 Choice::Start(path, state) => {
                     starts.push(JsonStart { path: self.name(*path), state: self.state(*path, state) });
@@ -295,6 +308,6 @@ impl Own<'_> {
                 }
             }
         }
-        JsonOpponents { minimal: opponents.minimal, of: opponents.of, starts, replaced }
+        JsonChoices { starts, replaced }
     }
 }

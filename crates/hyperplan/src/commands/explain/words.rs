@@ -207,18 +207,26 @@ impl Words<'_> {
         text
     }
 
+    /// Paths of the other player that make a choice.
+    fn choice(&self, choice: &Choice) -> String {
+        match choice {
+            Choice::Start(path, state) => {
+                format!("{} that begins in {}", self.name(*path), self.state(*path, state))
+            }
+            Choice::Replaced(path, from, time) => {
+                let (path, from) = (self.name(*path), self.name(*from));
+                format!("{path} that does something else than {from} at time {time}")
+            }
+        }
+    }
+
     fn opponents(&self, found: &Opponents) -> String {
         let (mut starts, mut steps) = (Vec::new(), Vec::new());
         for choice in &found.choices {
             match choice {
-                Choice::Start(path, state) if found.starts.contains(path) => {
-                    starts.push(format!("{} that begins in {}", self.name(*path), self.state(*path, state)));
-                }
-                Choice::Start(..) => {}
-                Choice::Replaced(path, from, time) => {
-                    let (path, from) = (self.name(*path), self.name(*from));
-                    steps.push(format!("{path} that does something else than {from} at time {time}"));
-                }
+                Choice::Start(path, _) if !found.starts.contains(path) => {}
+                Choice::Start(..) => starts.push(self.choice(choice)),
+                Choice::Replaced(..) => steps.push(self.choice(choice)),
             }
         }
         let mut kinds = Vec::new();
@@ -250,9 +258,14 @@ impl Words<'_> {
     }
 
     fn candidate(&self, candidate: &Candidate) -> String {
-        let how = match candidate.spared {
-            Some(1) => "it wins unless the other player makes one choice".to_owned(),
-            Some(spared) => format!("it wins unless the other player makes one of {spared} choices"),
+        let how = match candidate.spared.as_deref() {
+            Some(choices) if choices.len() <= FEW => {
+                let choices: Vec<String> = choices.iter().map(|choice| self.choice(choice)).collect();
+                format!("it wins against any but {}", choices.join(", and "))
+            }
+            Some(choices) => {
+                format!("it wins unless the other player makes one of {} choices", choices.len())
+            }
             None => "it does what the objective asks of it alone".to_owned(),
         };
         let names = candidate.strategy.traces.iter().map(|trace| self.name(trace.path));

@@ -26,7 +26,7 @@ use hyperplan_problem::answer::{
     Answer, Below, CostValue, Failed, Ordered, ReasonCode, Seconds, Size, Solver, Verdict, Verified,
     WitnessPath, to_witness,
 };
-use hyperplan_problem::{Objective, Quantifier, Target, display};
+use hyperplan_problem::{Objective, Problem, Quantifier, Target, display};
 use hyperplan_render::{Scene, can_draw};
 use lanes::Team;
 use std::path::Path;
@@ -246,7 +246,12 @@ fn solve(
     };
     if let Wish::Constant(parameter) = wish {
         return match parameter.least(loaded, objective, config, explain) {
-            Ok((outcome, searched)) => Ok((outcome, Some(searched), Costs::default())),
+            Ok((outcome, searched)) => {
+                let problem = &searched.loaded.problem;
+                let objective = problem.objective(name).unwrap_or(objective);
+                let outcome = straight(problem, objective, outcome, team);
+                Ok((outcome, Some(searched), Costs::default()))
+            }
             Err(MinimizeError::Problem(failure)) => Err((failure, ReasonCode::Unsupported)),
             Err(MinimizeError::Solve { value, error }) => {
                 Err(failed(&error, format!(" with {} = {value}", parameter.constant)))
@@ -257,7 +262,7 @@ fn solve(
     if targets.is_empty() {
         let outcome = plan::solve(&loaded.problem, objective, config);
         return outcome
-            .map(|outcome| (outcome, None, Costs::default()))
+            .map(|outcome| (straight(&loaded.problem, objective, outcome, team), None, Costs::default()))
             .map_err(|error| failed(&error, String::new()));
     }
     let found = plan::cheapest(&loaded.problem, objective, &targets, config);
@@ -270,6 +275,20 @@ fn solve(
     };
     let costs = targets.iter().zip(&values).map(value).collect();
     Ok((outcome, None, Costs { costs, undecided }))
+}
+
+/// The answer with a strategy without detours, unless the first is wanted.
+fn straight(
+    problem: &Problem,
+    objective: &Objective,
+    outcome: plan::Outcome,
+    team: &Team<'_>,
+) -> plan::Outcome {
+    if team.args.first {
+        return outcome;
+    }
+    let deadline = team.config.deadline.within(plan::time_for(&outcome));
+    plan::straightened(problem, objective, outcome, team.config, &deadline).outcome
 }
 
 /// How long may be thought about why there is no strategy.
