@@ -53,6 +53,9 @@ const CHECK: Budget = Budget { states: 100_000, entries: 1_000_000, moves: 2_000
 /// Systems with more states are not looked at for outcomes.
 const STATES: usize = 300_000;
 
+/// Eventualities that are followed.
+const EVENTUALITIES: usize = 50;
+
 /// Loops that are tried.
 const LOOPS: usize = 20;
 
@@ -117,7 +120,9 @@ impl<'a> Pass<'a> {
             let [path] = own.as_slice() else { return None };
             matches!(formula.nodes[part], Node::Until(..)).then_some((*path, part))
         });
-        let eventualities = eventualities.collect();
+        // Nobody waits for more of them to be followed one by one.
+        let eventualities = Some(eventualities.collect::<Vec<_>>()).filter(|all| all.len() <= EVENTUALITIES);
+        let eventualities = eventualities.unwrap_or_default();
         let mut pass = Pass { problem, objective, deadline, rest: Rest::Owing, eventualities };
         let owing = pass.steps(first).filter(|_| pass.owes_little());
         pass.rest = Rest::Absorbed;

@@ -56,11 +56,12 @@ impl<'a> Asker<'a> {
 }
 
 /// What of a list is needed, one by one; and whether each of it was found to be. `without` says of a rest whether it is
-/// enough, if that is known; more of the list than is enough is enough, too.
+/// enough, if that is known; more of the list than is enough is enough, too. Nothing more is asked once the deadline has passed.
 ///
 /// What is not needed is left out in large pieces first, then in smaller ones.
 pub(super) fn needed<T: Clone>(
     all: Vec<T>,
+    deadline: &Deadline,
     mut without: impl FnMut(&[T]) -> Result<Option<bool>, Error>,
 ) -> Result<(Vec<T>, bool), Error> {
     let mut kept = all;
@@ -68,6 +69,9 @@ pub(super) fn needed<T: Clone>(
     loop {
         let (mut at, mut sure) = (0, true);
         while at < kept.len() {
+            if deadline.passed() {
+                return Ok((kept, false));
+            }
             let end = (at + size).min(kept.len());
             let rest = [&kept[..at], &kept[end..]].concat();
             match without(&rest)? {
@@ -87,16 +91,20 @@ pub(super) fn needed<T: Clone>(
 
 #[cfg(test)]
 mod tests {
-    use super::needed;
+    use super::{Deadline, needed};
 
     #[test]
     fn what_is_needed_is_kept() {
+        let never = Deadline::never();
         for (length, core) in [(1, vec![0]), (7, vec![6]), (16, vec![0, 3, 15]), (9, Vec::new())] {
             let mut without = |rest: &[usize]| Ok(Some(core.iter().all(|one| rest.contains(one))));
-            let found = needed((0..length).collect(), &mut without).expect("nothing fails");
+            let found = needed((0..length).collect(), &never, &mut without).expect("nothing fails");
             assert_eq!(found, (core.clone(), true));
         }
         let mut nothing = |_: &[usize]| Ok(None);
-        assert_eq!(needed(vec![1, 2, 3], &mut nothing).expect("nothing fails"), (vec![1, 2, 3], false));
+        assert_eq!(
+            needed(vec![1, 2, 3], &never, &mut nothing).expect("nothing fails"),
+            (vec![1, 2, 3], false)
+        );
     }
 }

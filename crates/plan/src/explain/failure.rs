@@ -95,7 +95,8 @@ pub(super) fn failing(
             let (part, time) = (!value).then(|| culprit(objective, part, &settled))?;
             Some(Failing { part, time: Some(time) })
         };
-        let mut found: Vec<Failing> = all.into_iter().filter_map(failed).collect();
+        let in_time = |_: &FormulaId| !asker.deadline.passed();
+        let mut found: Vec<Failing> = all.into_iter().take_while(in_time).filter_map(failed).collect();
         found.sort_by_key(|failing| failing.time);
         return Ok(found);
     }
@@ -116,7 +117,7 @@ pub(super) fn failing(
         return Ok(Vec::new());
     }
     let mut without = |rest: &[FormulaId]| if rest.is_empty() { Ok(Some(false)) } else { question(rest) };
-    let (core, _) = needed(all, &mut without)?;
+    let (core, _) = needed(all, &asker.deadline, &mut without)?;
     Ok(core.into_iter().map(|part| Failing { part, time: None }).collect())
 }
 

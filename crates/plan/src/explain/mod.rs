@@ -260,7 +260,7 @@ impl<'a> Explainer<'a> {
             // There are paths, so something is possible.
             if rest.is_empty() { Ok(Some(false)) } else { self.asker.impossible(&self.question(rest, scope)) }
         };
-        let (parts, minimal) = needed(parts, &mut without)?;
+        let (parts, minimal) = needed(parts, &self.asker.deadline, &mut without)?;
         if !minimal {
             self.found.open.push(Open::Core);
         }

@@ -17,6 +17,8 @@ use hyperplan_space::{Graph, StateIx, value_in};
 /// Systems with more states are not looked at, and more starts or steps not asked about one by one.
 const STATES: usize = 300_000;
 const CHOICES: usize = 1_000;
+/// Of more parts it is not found out where a path may begin.
+const PARTS: usize = 100;
 /// Choices that a candidate is spared alone, to see whether it wins then.
 const TRIED: usize = 3;
 
@@ -88,7 +90,7 @@ pub(super) fn opponents(
         }
         Ok(Some(outcome.verdict == Verdict::Unrealizable))
     };
-    let (choices, minimal) = needed(all.clone(), &mut without)?;
+    let (choices, minimal) = needed(all.clone(), &asker.deadline, &mut without)?;
     // Those that are enough together are most likely to be what is too much: without one of them alone much is still won
     // against.
     for spared in choices.iter().take(TRIED) {
@@ -134,12 +136,16 @@ fn starts(asker: &Asker<'_>, objective: &Objective, path: PathId) -> Option<Vec<
         return None;
     }
     let graph = asker.graphs.explore(system, STATES)?;
+    let (_, others) = others(objective);
+    if others.len() > PARTS {
+        return None;
+    }
     let matters = |state: &State| {
         let mut leaf = |leaf: &PathLeaf| match *leaf {
             PathLeaf::State(own, leaf) if own == path => value_in(system, &Expr::Leaf(leaf), state),
             _ => None,
         };
-        others(objective).1.into_iter().any(|part| now(&objective.formula, part, &mut leaf) != Some(true))
+        others.iter().any(|&part| now(&objective.formula, part, &mut leaf) != Some(true))
     };
     let all = graph.initial.iter().map(|&state: &StateIx| Graph::state(&graph, system, state));
     let states: Vec<State> = all.filter(matters).take(CHOICES + 1).collect();

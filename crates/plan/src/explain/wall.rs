@@ -11,6 +11,9 @@ use std::collections::VecDeque;
 /// Systems with more states are not looked at.
 const STATES: usize = 1_000_000;
 
+/// Nor more parts.
+const PARTS: usize = 100;
+
 /// A part that asks a path for what it reaches in no time.
 #[derive(Clone, Debug)]
 pub struct Wall {
@@ -36,6 +39,9 @@ pub(super) fn wall(
     parts: &[FormulaId],
     graphs: &Graphs,
 ) -> Option<Wall> {
+    if parts.len() > PARTS {
+        return None;
+    }
     let formula = &objective.formula;
     for path in objective.leading_block() {
         let system = &problem.systems[objective.paths[path].system];
@@ -44,7 +50,7 @@ pub(super) fn wall(
             if !system.is_finite() {
                 continue;
             }
-            let graph = graphs.explore(system, STATES)?;
+            let Some(graph) = graphs.explore(system, STATES) else { continue };
             // Only what holds for as long as the eventuality may take keeps the path anywhere.
             let lasts = |id: &FormulaId| {
                 let (always, inner) = formula.globally(*id)?;

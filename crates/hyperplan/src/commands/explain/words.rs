@@ -28,12 +28,15 @@ pub(super) fn part_text(loaded: &Loaded, objective: &Objective, part: FormulaId)
 /// The line of it that `solve` prints.
 pub(crate) fn in_short(loaded: &Loaded, objective: &Objective, found: &Explanation) -> Option<String> {
     let text = |part: &FormulaId| format!("`{}`", cut(&part_text(loaded, objective, *part)));
-    let all = |parts: Vec<String>| match parts.len() {
-        0..=FEW => parts.join(", "),
-        more => format!("{}, and {} more", parts[..FEW].join(", "), more - FEW),
+    let all = |parts: &[FormulaId]| {
+        let first: Vec<String> = parts.iter().take(FEW).map(text).collect();
+        match parts.len() {
+            0..=FEW => first.join(", "),
+            more => format!("{}, and {} more", first.join(", "), more - FEW),
+        }
     };
     if let Some(core) = &found.core {
-        let parts = all(core.parts.iter().map(text).collect());
+        let parts = all(&core.parts);
         let more = "`hyperplan explain` says more";
         return Some(match core.parts.len() {
             1 if core.scope == Scope::Game => {
@@ -49,7 +52,8 @@ pub(crate) fn in_short(loaded: &Loaded, objective: &Objective, found: &Explanati
     Some(match first.time {
         Some(time) => format!("why: {} fails at time {time}", text(&first.part)),
         None => {
-            let parts = all(failure.parts.iter().map(|failing| text(&failing.part)).collect());
+            let parts: Vec<FormulaId> = failure.parts.iter().map(|failing| failing.part).collect();
+            let parts = all(&parts);
             format!("why: whatever the other paths are, they do not meet {parts}")
         }
     })
@@ -137,7 +141,11 @@ impl Words<'_> {
     fn marked(&self, code: &'static str, message: String, parts: &[FormulaId]) -> String {
         let Told { loaded, objective, .. } = self.told;
         let mut places: Vec<(hyperplan_syntax::Span, Vec<String>)> = Vec::new();
-        for &part in parts {
+        let message = match parts.len().checked_sub(LISTED) {
+            Some(more) if more > 0 => format!("{message} ({more} more are not marked)"),
+            _ => message,
+        };
+        for &part in parts.iter().take(LISTED) {
             let (span, text) = (objective.formula.spans[part], self.part(part));
             let words: Vec<&str> = loaded.sources.snippet(span).split_whitespace().collect();
             let said = if words.join(" ") == text { Vec::new() } else { vec![cut(&text)] };
@@ -275,7 +283,7 @@ impl Words<'_> {
 
     fn failure(&self, failure: &Failure) -> String {
         let mut text = String::new();
-        for failing in &failure.parts {
+        for failing in failure.parts.iter().take(FEW) {
             if let Failing { part, time: Some(time) } = failing {
                 text += &self.marked("fails", format!("this part fails at time {time}"), &[*part]);
             }
