@@ -15,10 +15,10 @@ use crate::prepare::is_existential;
 use crate::solve::solve_sharing;
 use hyperplan_encode::Graphs;
 use hyperplan_problem::{
-    Cost, Expr, FormulaId, Interval, Node, Objective, PathId, Problem, Strategy, Target, Trace, Value,
+    Cost, Expr, FormulaId, Interval, Node, Objective, PathId, Problem, Strategy, Target, Trace, Type, Value,
 };
 use hyperplan_solver::Deadline;
-use hyperplan_space::holds_in;
+use hyperplan_space::{bounds, holds_in};
 use hyperplan_verify::{Budget, Check, check, holds_for_all_outcomes, settled};
 use std::time::Duration;
 
@@ -59,11 +59,30 @@ const EVENTUALITIES: usize = 50;
 /// Loops that are tried.
 const LOOPS: usize = 20;
 
+/// Problems of no more states at all times are small: the pass ends soon, and is not ended by the clock, on which its answer
+/// would depend.
+const SMALL: i64 = 20_000;
+
 /// The time that the pass may take after a search.
 #[must_use]
-pub fn time_for(outcome: &Outcome) -> Duration {
+pub fn time_for(problem: &Problem, objective: &Objective, outcome: &Outcome) -> Duration {
+    if size(problem, objective, outcome) <= SMALL {
+        return MOST;
+    }
     let took = outcome.seconds.encode + outcome.seconds.solve + outcome.seconds.verify;
     Duration::try_from_secs_f64(took * SHARE).unwrap_or(MOST).clamp(LEAST, MOST)
+}
+
+/// States of all paths at all times, reachable or not.
+fn size(problem: &Problem, objective: &Objective, outcome: &Outcome) -> i64 {
+    let of = |path: PathId| {
+        let system = &problem.systems[objective.paths[path].system];
+        let values =
+            |ty: &Type| bounds(ty).map_or(i64::MAX, |(lo, hi)| hi.saturating_sub(lo).saturating_add(1));
+        let states = system.vars.iter().map(|var| values(&var.ty)).fold(1, i64::saturating_mul);
+        states.saturating_mul(i64::from(outcome.horizons[path].unwrap_or(0)).saturating_add(1))
+    };
+    objective.paths.keys().map(of).fold(0, i64::saturating_add)
 }
 
 /// The strategy of an answer without detours, as far as those are found before the deadline. Answers without a verified strategy

@@ -287,7 +287,7 @@ fn straight(
     if team.args.first {
         return outcome;
     }
-    let deadline = team.config.deadline.within(plan::time_for(&outcome));
+    let deadline = team.config.deadline.within(plan::time_for(problem, objective, &outcome));
     plan::straightened(problem, objective, outcome, team.config, &deadline).outcome
 }
 
