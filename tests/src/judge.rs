@@ -153,7 +153,11 @@ pub fn wrong(
 }
 
 /// A trace as brute force knows it.
-fn path(system: &model::System, objective: &Problem, trace: &hyperplan_problem::Trace) -> Path {
+///
+/// # Panics
+/// If it is none of the system.
+#[must_use]
+pub fn path(system: &model::System, objective: &Problem, trace: &hyperplan_problem::Trace) -> Path {
     let index = |value: &Value| match value {
         Value::Bool(b) => usize::from(*b),
         Value::Int(n) => usize::try_from(*n).expect("values are few and small"),

@@ -2,10 +2,12 @@
 
 mod certify;
 mod compare;
+mod explain;
 mod verify;
 
 pub(crate) use certify::Certify;
 pub(crate) use compare::{Asked, Compare, Settings, Shard};
+pub(crate) use explain::Explain;
 pub(crate) use verify::Verify;
 
 use crate::foreign::Foreign;
@@ -163,6 +165,8 @@ pub(crate) enum Command {
     Check(Check),
     /// Check a strategy without any solver
     Verify(Verify),
+    /// Say why an objective is unrealizable, has a counterexample, or why a strategy fails
+    Explain(Explain),
     /// Check certificates that there is no strategy, without any solver
     Certify(Certify),
     /// Draw the map, with the paths of a strategy
@@ -231,6 +235,9 @@ pub(crate) struct Solve {
     /// Prints the strategy unchecked
     #[arg(long)]
     pub(crate) no_verify: bool,
+    /// Prints the strategy that was found first, detours and all
+    #[arg(long)]
+    pub(crate) first: bool,
     /// Searches in N processes at once, each with these limits: with --minimize of a constant several of its values, and in several
     /// ways, modes of quantifiers, encodings, solvers, seeds, of which only those vary that are not given; the first verified answer that decides
     /// ends the others

@@ -34,6 +34,11 @@ pub(crate) fn gather(cli: &mut Cli) -> Result<()> {
                 return Err(Failure::input("a strategy is needed: STRATEGY.json, --actions or --model"));
             }
         }
+        Command::Explain(args) => {
+            let mut more = behind(&mut args.plan);
+            args.problem.foreign = found(&args.problem.file, &mut more, &args.reading)?;
+            one_strategy(&args.plan, false)?;
+        }
         Command::Certify(args) => {
             let all = std::mem::take(&mut args.folder).into_iter();
             let (mut more, folders) = all.partition(|path| is_foreign(path));

@@ -1,8 +1,8 @@
 //! One test for each file of `specs/`: `fail/NAME.hp` is refused with exactly the messages of `fail/NAME.stderr`;
 //! `pass/NAME.hp` is accepted, with the warnings of `pass/NAME.stderr` where that file exists, and every comment
 //! line `// OBJECTIVE: VERDICT` of it, as `KnownStatus` reads it, is what `solve` says, or where it goes on `by SOLVERS`,
-//! what each of those solvers says; one that is missing is skipped, unless `HYPERPLAN_REQUIRE_SOLVERS` is set. `UPDATE=1` writes
-//! the `.stderr` files.
+//! what each of those solvers says; one that is missing is skipped, unless `HYPERPLAN_REQUIRE_SOLVERS` is set. `explain/NAME.hp` is
+//! explained by the words of `explain/NAME.txt`. `UPDATE=1` writes the `.stderr` and `.txt` files.
 
 use hyperplan_problem::KnownStatus;
 use libtest_mimic::{Arguments, Failed, Trial};
@@ -32,6 +32,9 @@ fn main() {
         let name = name("case-studies", &path);
         let test = move || if large { understood(&path) } else { accepted(&path) };
         trials.push(Trial::test(name, test));
+    }
+    for path in problems("explain") {
+        trials.push(Trial::test(name("explain", &path), move || explained(&path)));
     }
     libtest_mimic::run(&arguments, trials).exit();
 }
@@ -105,6 +108,15 @@ fn accepted(path: &Path) -> Result<(), Failed> {
     compare(path, &messages)
 }
 
+fn explained(path: &Path) -> Result<(), Failed> {
+    let output = hyperplan(&["explain".as_ref(), path.as_os_str(), "--objective".as_ref(), "all".as_ref()])?;
+    let messages = String::from_utf8(output.stderr)?;
+    if output.status.code() != Some(1) || !messages.is_empty() {
+        return Err(format!("{} instead of exit status 1\n{messages}", output.status).into());
+    }
+    compare_with(path, "txt", &String::from_utf8(output.stdout)?)
+}
+
 fn understood(path: &Path) -> Result<(), Failed> {
     let output = hyperplan(&["horizon".as_ref(), path.as_os_str()])?;
     if output.status.code() == Some(0) && output.stderr.is_empty() {
@@ -115,7 +127,11 @@ fn understood(path: &Path) -> Result<(), Failed> {
 
 /// Compares messages with the file beside the problem; no file stands for no message.
 fn compare(path: &Path, messages: &str) -> Result<(), Failed> {
-    let expected_path = specs().join(path).with_extension("stderr");
+    compare_with(path, "stderr", messages)
+}
+
+fn compare_with(path: &Path, ending: &str, messages: &str) -> Result<(), Failed> {
+    let expected_path = specs().join(path).with_extension(ending);
     let expected = std::fs::read_to_string(&expected_path).unwrap_or_default();
     if messages == expected {
         return Ok(());

@@ -1,5 +1,5 @@
-//! Runs every example of the language's reference page, `docs/language.md`, of `docs/pictures.md`, `docs/proofs.md` and of the tutorials
-//! in `docs/tutorials/`, of which `check` must not warn; and what the README begins with.
+//! Runs every example of the language's reference page, `docs/language.md`, of `docs/explaining.md`, `docs/pictures.md`, `docs/proofs.md`
+//! and of the tutorials in `docs/tutorials/`, of which `check` must not warn; and what the README begins with.
 //!
 //! The info string of a fenced block says what the block is:
 //!
@@ -52,7 +52,8 @@ fn pages() -> Vec<(String, PathBuf)> {
     let tutorials = tutorials.map(|entry| entry.expect("readable").path());
     let mut paths: Vec<PathBuf> = tutorials.filter(|path| path.extension() == Some("md".as_ref())).collect();
     paths.sort();
-    paths.splice(0..0, ["language.md", "pictures.md", "proofs.md"].map(|page| Path::new(DOCS).join(page)));
+    let pages = ["explaining.md", "language.md", "pictures.md", "proofs.md"];
+    paths.splice(0..0, pages.map(|page| Path::new(DOCS).join(page)));
     let name = |path: &PathBuf| path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     paths.into_iter().map(|path| (name(&path), path)).collect()
 }

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{command, hyperplan, solver_is_there, text};
+use common::{command, hyperplan, hyperplan_with, solver_is_there, text};
 use std::io::{BufRead, BufReader};
 use std::process::Stdio;
 
@@ -295,4 +295,27 @@ fn outcomes_are_mentioned_where_they_matter() {
         assert_eq!(run.status, 0, "{objective}: {run:?}");
         assert_eq!(run.stderr.contains("p relies on outcomes"), relies, "{objective}: {run:?}");
     }
+}
+
+#[test]
+fn detours_are_left_out_unless_the_first_plan_is_wanted() {
+    let text = "system Room = grid { \"....\" \"S...\" } { edge stay; moves up, down, left, right, stay; } \
+                objective pair within 12 { exists p. exists q. start[p] & start[q] & F x[p] == 3 & F x[q] == 3 \
+                & G (state[p] != state[q] | start[p]) }";
+    let moved = |more: &[&str]| -> usize {
+        let run = hyperplan_with(&[&["solve", "-", "--format", "json"], more].concat(), text);
+        assert_eq!(run.status, 0, "{}", run.stderr);
+        let answer = run.json().remove(0);
+        assert_eq!(answer["verified"], "by-search");
+        let paths = answer["witness"].as_array().expect("two paths").clone();
+        let until = |path: &serde_json::Value| {
+            let states = path["states"].as_array().expect("states").clone();
+            states.iter().position(|state| state["x"] == 3).expect("it gets there")
+        };
+        paths.iter().map(until).sum()
+    };
+    let (first, printed) = (moved(&["--first"]), moved(&[]));
+    assert!(printed <= first, "{printed} steps instead of {first}");
+    // One goes straight, the other around it.
+    assert!(printed >= 7, "{printed} steps are too few");
 }

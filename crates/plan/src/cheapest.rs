@@ -50,9 +50,34 @@ pub fn cheapest(
     let (objective, time) = to_the_end(problem, objective, targets);
     let graphs = Graphs::default();
     let outcome = solve_sharing(problem, &objective, config, &graphs)?;
+    cheaper((problem, &objective, time), targets, config, outcome, graphs)
+}
+
+/// As [`cheapest`], of an objective for which there is an answer; `None` where its paths are not long enough to be paid for to
+/// the end.
+pub(crate) fn improved(
+    problem: &Problem,
+    objective: &Objective,
+    targets: &[Target],
+    config: &Config,
+    outcome: Outcome,
+) -> Option<Result<Cheapest, Error>> {
+    let (extended, time) = to_the_end(problem, objective, targets);
+    let same = extended.formula.nodes.len() == objective.formula.nodes.len();
+    same.then(|| cheaper((problem, objective, time), targets, config, outcome, Graphs::default()))
+}
+
+/// Lowers what an answer's strategy costs.
+fn cheaper(
+    (problem, objective, time): (&Problem, &Objective, u32),
+    targets: &[Target],
+    config: &Config,
+    outcome: Outcome,
+    graphs: Graphs,
+) -> Result<Cheapest, Error> {
     // A search without queries takes no bounds.
     let one_by_one = outcome.states.is_enumerated() && config.quantifiers != Quantifiers::Explicit;
-    let (objective, spent) = (&objective, Spent::default());
+    let spent = Spent::default();
     let mut search = Search { problem, objective, time, targets, config, graphs, one_by_one, spent };
     search.spent.add(&outcome);
     let Some(strategy) = outcome.witness.clone().filter(|_| outcome.verdict == Verdict::Realizable) else {

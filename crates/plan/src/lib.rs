@@ -3,8 +3,9 @@
 //! [`solve`] decides an objective: quantifiers are handed to the solver, expanded into finitely many cases, or
 //! decided by counterexamples; a strategy is verified by `hyperplan-verify`, which shares nothing with the encoding,
 //! before it is returned. [`minimize()`] finds the least value of a constant with which it can be had, [`cheapest()`] the
-//! strategy that costs least. [`case()`] is one of several cases of an
-//! objective, for searches side by side. [`emit`] gives the query as a benchmark instead. [`lint`] and [`lint_systems`] look for what is probably not meant.
+//! strategy that costs least. [`straightened()`] takes detours out of one. [`mod@explain`] says why there is none. [`case()`] is
+//! one of several cases of an objective, for searches side by side. [`emit`] gives the query as a benchmark instead. [`lint`] and
+//! [`lint_systems`] look for what is probably not meant.
 
 mod cegis;
 mod cheapest;
@@ -12,9 +13,11 @@ mod config;
 mod confirm;
 mod cubes;
 mod decide;
+mod detour;
 mod direct;
 mod emit;
 mod evidence;
+pub mod explain;
 mod fact;
 mod lasting;
 mod lint;
@@ -30,6 +33,7 @@ mod watch;
 pub use cheapest::{Cheapest, Value, cheapest};
 pub use config::{Config, Outcome, Quantifiers, Seconds, States, Verdict, Verified};
 pub use cubes::case;
+pub use detour::{Rest, Straight, straightened, time_for};
 pub use emit::{EmitConfig, Emitted, Status, Track, emit, strategy_of_model};
 pub use evidence::Evidence;
 pub use fact::{Because, Error, Fallen, Fault, Note, Reason, Unsupported, Worth, Wrong};

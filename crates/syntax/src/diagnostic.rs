@@ -9,6 +9,8 @@ pub enum Severity {
     Error,
     /// The input is accepted, but probably does not say what was meant.
     Warning,
+    /// Nothing is wrong with the input: an answer about a place in it.
+    Note,
 }
 
 /// One message about one place. Rendered by [`crate::render`].
@@ -41,6 +43,12 @@ impl Diagnostic {
     #[must_use]
     pub fn warning(code: &'static str, span: Span, message: impl Into<String>) -> Self {
         Self::new(Severity::Warning, code, Some(span), message.into())
+    }
+
+    /// An answer about a place.
+    #[must_use]
+    pub fn note(code: &'static str, span: Span, message: impl Into<String>) -> Self {
+        Self::new(Severity::Note, code, Some(span), message.into())
     }
 
     /// An error about the input as a whole.

@@ -54,6 +54,7 @@ impl Shown {
         let severity = match diagnostic.severity {
             Severity::Error => miette::Severity::Error,
             Severity::Warning => miette::Severity::Warning,
+            Severity::Note => miette::Severity::Advice,
         };
         let mut places: Vec<(Span, &str)> = Vec::new();
         let mut elsewhere = Vec::new();
@@ -111,7 +112,11 @@ impl std::error::Error for Shown {}
 
 impl Report for Shown {
     fn code<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        let severity = if self.severity == miette::Severity::Warning { "warning" } else { "error" };
+        let severity = match self.severity {
+            miette::Severity::Error => "error",
+            miette::Severity::Warning => "warning",
+            miette::Severity::Advice => "note",
+        };
         self.code.map(|code| Box::new(format!("{severity}[{code}]")) as _)
     }
 
@@ -171,7 +176,7 @@ pub struct JsonRelated {
 pub struct JsonDiagnostic {
     /// The name of the source that the place is in; of the problem file where there is no place.
     pub file: String,
-    /// `error` or `warning`.
+    /// `error`, `warning` or `note`.
     pub severity: &'static str,
     /// See [`Diagnostic::code`].
     pub code: &'static str,
@@ -203,6 +208,7 @@ pub fn to_json(sources: &SourceMap, file: &str, diagnostic: &Diagnostic) -> Json
         severity: match diagnostic.severity {
             Severity::Error => "error",
             Severity::Warning => "warning",
+            Severity::Note => "note",
         },
         code: diagnostic.code,
         message: diagnostic.message.clone(),

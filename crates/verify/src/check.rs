@@ -51,6 +51,32 @@ pub fn decide(problem: &Problem, objective: &Objective, budget: &Budget) -> Resu
     }
 }
 
+/// The truth value of a formula whose paths are all given, one trace for each path variable in order, and the first time at
+/// which what was read of them decides it; `None` where that takes more than the budget.
+///
+/// # Errors
+/// If a trace is malformed, or too short for what the formula reads.
+pub fn settled(
+    problem: &Problem,
+    objective: &Objective,
+    strategy: &Strategy,
+    budget: &Budget,
+) -> Result<Option<(bool, u32)>, Error> {
+    let outcome = Search::new(problem, objective, objective.paths.len(), budget).and_then(|mut search| {
+        for trace in &strategy.traces {
+            let fixed = well_formed(&mut search, objective, trace)?;
+            search.fixed.push(fixed);
+        }
+        Ok((search.run(false)?, search.time))
+    });
+    match outcome {
+        Ok((Outcome::Decided(truth, _), time)) => Ok(Some((truth, time))),
+        Ok((Outcome::Missing, _)) => Err(too_short(objective, strategy)),
+        Err(Stop::Budget) => Ok(None),
+        Err(Stop::Error(error)) => Err(error),
+    }
+}
+
 fn too_large(stop: Stop, search: Option<&Search<'_>>, budget: &Budget) -> Result<Check, Error> {
     match stop {
         Stop::Budget => {

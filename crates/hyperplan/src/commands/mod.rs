@@ -5,6 +5,7 @@ mod check;
 mod compare;
 mod emit;
 mod emit_family;
+mod explain;
 mod horizon;
 mod import;
 mod manual;
@@ -31,6 +32,7 @@ pub(crate) fn run(cli: &Cli, out: &mut Output) -> Result {
         Command::Horizon(args) => horizon::run(args, out),
         Command::Check(args) => check::run(args, verbose, out),
         Command::Verify(args) => verify::run(args, out),
+        Command::Explain(args) => explain::run(args, out),
         Command::Certify(args) => certify::run(args, out),
         Command::Import(args) => import::run(args, out),
         Command::Plot(args) => plot::run(args, out),

@@ -12,7 +12,7 @@ use crate::report;
 use hyperplan_outlet::one_line;
 use hyperplan_plan::{Error, Unsupported, strategy_of_model};
 use hyperplan_problem::answer::{WitnessPath, to_witness};
-use hyperplan_problem::{Objective, Problem, Quantifier, Strategy, Trace};
+use hyperplan_problem::{Objective, Problem, Strategy, Trace};
 use hyperplan_render::{actions_line, table};
 use hyperplan_solver::{Deadline, PrintedModel};
 use hyperplan_verify::{Budget, Check, Defeat, check};
@@ -160,10 +160,7 @@ impl Report {
     }
 
     fn text(&self, problem: &Problem, objective: &Objective, verdict: &Check) -> String {
-        let role = match objective.paths.first().map(|p| p.quantifier) {
-            Some(Quantifier::Forall) => "counterexample",
-            _ => "strategy",
-        };
+        let role = report::role(objective);
         let mut text = match &self.reason {
             None => format!("{}: the {role} holds, verified by search\n", self.objective),
             Some(reason) if self.verdict == "fails" => {

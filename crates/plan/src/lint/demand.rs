@@ -8,7 +8,7 @@ use hyperplan_syntax::{Diagnostic, Span};
 /// Looks at the conjuncts that read only `forall` paths. One that some path refutes makes the objective fail,
 /// whatever the `exists` paths are. Without those that is just what an objective asks; and an implication has an
 /// assumption already.
-pub(super) fn lint(asker: &mut Asker<'_>, found: &mut Vec<Diagnostic>) {
+pub(crate) fn lint(asker: &mut Asker<'_>, found: &mut Vec<Diagnostic>) {
     let objective = asker.objective;
     let formula = &objective.formula;
     if objective.paths.iter().all(|p| p.quantifier == Quantifier::Forall) {
@@ -44,7 +44,7 @@ fn demanded(name: &str, span: Span) -> Diagnostic {
 }
 
 /// The paths that a subformula reads, without repetition.
-fn paths(formula: &Formula, root: FormulaId) -> Vec<PathId> {
+pub(crate) fn paths(formula: &Formula, root: FormulaId) -> Vec<PathId> {
     let mut paths = Vec::new();
     leaves(formula, root, &mut |leaf| paths.extend(leaf.paths().into_iter().flatten()));
     paths.sort_unstable();

@@ -3,10 +3,10 @@
 //! What needs a search is a question with a time budget: whether some paths, all chosen freely, do something. The
 //! embedded solver answers it, for systems with infinitely many states an external one if there is one; what it cannot answer in time is said to be undecided, never guessed.
 
-mod demand;
+pub(crate) mod demand;
 mod horizon;
-mod question;
-mod rewrite;
+pub(crate) mod question;
+pub(crate) mod rewrite;
 mod start;
 mod systems;
 #[cfg(test)]

@@ -18,9 +18,9 @@ const STATES: usize = 300_000;
 const LISTED: usize = 20;
 
 /// Asks, keeps the time, and remembers what was not decided.
-pub(super) struct Asker<'a> {
-    pub(super) problem: &'a Problem,
-    pub(super) objective: &'a Objective,
+pub(crate) struct Asker<'a> {
+    pub(crate) problem: &'a Problem,
+    pub(crate) objective: &'a Objective,
     /// The end of all questions.
     deadline: Deadline,
     /// The time for one of them.
@@ -31,7 +31,7 @@ pub(super) struct Asker<'a> {
 }
 
 impl<'a> Asker<'a> {
-    pub(super) fn new(
+    pub(crate) fn new(
         problem: &'a Problem,
         objective: &'a Objective,
         deadline: Deadline,
@@ -41,20 +41,20 @@ impl<'a> Asker<'a> {
         Asker { problem, objective, deadline, each, solver, undecided: Vec::new() }
     }
 
-    pub(super) fn into_undecided(self) -> Vec<Diagnostic> {
+    pub(crate) fn into_undecided(self) -> Vec<Diagnostic> {
         self.undecided
     }
 
     /// Whether some choice of all paths satisfies the formula; `None` where that was not decided. `what` completes
     /// the sentence "it is undecided whether ...".
-    pub(super) fn possible(&mut self, formula: Formula, about: Span, what: &str) -> Option<bool> {
+    pub(crate) fn possible(&mut self, formula: Formula, about: Span, what: &str) -> Option<bool> {
         let question = free(self.objective, formula);
         let found = self.example(self.problem, &question, about, what)?;
         Some(found.is_some())
     }
 
     /// The paths of an objective without `forall` that satisfy it, where there are some.
-    pub(super) fn example(
+    pub(crate) fn example(
         &mut self,
         problem: &Problem,
         question: &Objective,
@@ -72,7 +72,7 @@ impl<'a> Asker<'a> {
     }
 
     /// A warning where some path ranges over nothing, so that quantifiers alone decide the objective.
-    pub(super) fn without_paths(&mut self) -> Option<Diagnostic> {
+    pub(crate) fn without_paths(&mut self) -> Option<Diagnostic> {
         let config = self.config();
         let (problem, objective) = (self.problem, self.objective);
         match nothing_for(problem, objective, &config) {
@@ -85,7 +85,7 @@ impl<'a> Asker<'a> {
     }
 
     /// Whether there is no time for more questions, which is then noted.
-    pub(super) fn is_over(&mut self, about: Span) -> bool {
+    pub(crate) fn is_over(&mut self, about: Span) -> bool {
         let over = self.deadline.passed();
         if over {
             self.give_up(Stop::Unknown(Unknown::Timeout.into()), about, "every part of this matters");
@@ -99,7 +99,7 @@ impl<'a> Asker<'a> {
     }
 
     /// Notes a question that was not asked.
-    pub(super) fn leave_open(&mut self, about: Span, what: &str) {
+    pub(crate) fn leave_open(&mut self, about: Span, what: &str) {
         let message = format!("it is undecided whether {what}");
         self.undecided.push(Diagnostic::warning("undecided", about, message));
     }
@@ -128,7 +128,7 @@ impl<'a> Asker<'a> {
 }
 
 /// The objective with all paths chosen freely, and another formula.
-pub(super) fn free(objective: &Objective, formula: Formula) -> Objective {
+pub(crate) fn free(objective: &Objective, formula: Formula) -> Objective {
     let exists = |path: &PathVar| PathVar { quantifier: Quantifier::Exists, ..path.clone() };
     Objective { formula, paths: objective.paths.iter().map(exists).collect(), ..objective.clone() }
 }

@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use typed_index_collections::TiVec;
 
 /// Subformulas, each with the truth value that stands in its place.
-pub(super) type Replaced = BTreeMap<FormulaId, bool>;
+pub(crate) type Replaced = BTreeMap<FormulaId, bool>;
 
 /// Builds formulas out of parts of another one.
-pub(super) struct Builder<'f> {
+pub(crate) struct Builder<'f> {
     from: &'f Formula,
     /// What was built.
     formula: Formula,
@@ -16,18 +16,18 @@ pub(super) struct Builder<'f> {
 
 /// A part that was built, or the truth value that it came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Built {
+pub(crate) enum Built {
     Constant(bool),
     Node(FormulaId),
 }
 
 impl<'f> Builder<'f> {
-    pub(super) fn new(from: &'f Formula) -> Self {
+    pub(crate) fn new(from: &'f Formula) -> Self {
         Builder { from, formula: Formula::default() }
     }
 
     /// The subformulas at `roots` under these replacements.
-    pub(super) fn parts(&mut self, roots: &[FormulaId], replaced: &Replaced) -> Vec<Built> {
+    pub(crate) fn parts(&mut self, roots: &[FormulaId], replaced: &Replaced) -> Vec<Built> {
         let needed = needed(self.from, roots, replaced);
         let mut built: TiVec<FormulaId, Built> = TiVec::with_capacity(needed.len());
         for (id, &needed) in needed.iter_enumerated() {
@@ -41,7 +41,7 @@ impl<'f> Builder<'f> {
     }
 
     /// The subformula at `root`, or its negation.
-    pub(super) fn part(&mut self, root: FormulaId, value: bool) -> Built {
+    pub(crate) fn part(&mut self, root: FormulaId, value: bool) -> Built {
         let built = self.parts(&[root], &Replaced::new()).into_iter().next();
         let built = built.unwrap_or(Built::Constant(true));
         if value { built } else { self.not(built, root) }
@@ -79,7 +79,7 @@ impl<'f> Builder<'f> {
         self.push(node, id)
     }
 
-    pub(super) fn not(&mut self, part: Built, at: FormulaId) -> Built {
+    pub(crate) fn not(&mut self, part: Built, at: FormulaId) -> Built {
         match part {
             Built::Constant(value) => Built::Constant(!value),
             Built::Node(node) => self.push(Node::Not(node), at),
@@ -87,7 +87,7 @@ impl<'f> Builder<'f> {
     }
 
     /// A conjunction (`and`) or disjunction of parts.
-    pub(super) fn join(&mut self, and: bool, parts: Vec<Built>, at: FormulaId) -> Built {
+    pub(crate) fn join(&mut self, and: bool, parts: Vec<Built>, at: FormulaId) -> Built {
         let mut nodes = Vec::with_capacity(parts.len());
         for part in parts {
             match part {
@@ -105,7 +105,7 @@ impl<'f> Builder<'f> {
     }
 
     /// The formula whose root is this part; `None` where it is a truth value.
-    pub(super) fn finish(mut self, part: Built) -> Result<Formula, bool> {
+    pub(crate) fn finish(mut self, part: Built) -> Result<Formula, bool> {
         match part {
             Built::Constant(value) => Err(value),
             Built::Node(node) => {
@@ -146,7 +146,7 @@ fn needed(formula: &Formula, roots: &[FormulaId], replaced: &Replaced) -> TiVec<
 }
 
 /// The nodes in which a subformula occurs, itself included.
-pub(super) fn above(formula: &Formula, id: FormulaId) -> TiVec<FormulaId, bool> {
+pub(crate) fn above(formula: &Formula, id: FormulaId) -> TiVec<FormulaId, bool> {
     let mut above: TiVec<FormulaId, bool> = TiVec::with_capacity(formula.nodes.len());
     for (at, node) in formula.nodes.iter_enumerated() {
         let inside = at == id || at > id && node.children().into_iter().any(|child| above[child]);
@@ -156,7 +156,7 @@ pub(super) fn above(formula: &Formula, id: FormulaId) -> TiVec<FormulaId, bool> 
 }
 
 /// The conjuncts of a formula; what is replaced as a whole is one.
-pub(super) fn conjuncts(formula: &Formula, root: FormulaId, replaced: &Replaced) -> Vec<FormulaId> {
+pub(crate) fn conjuncts(formula: &Formula, root: FormulaId, replaced: &Replaced) -> Vec<FormulaId> {
     let mut found = Vec::new();
     let mut stack = vec![root];
     while let Some(id) = stack.pop() {
@@ -169,7 +169,7 @@ pub(super) fn conjuncts(formula: &Formula, root: FormulaId, replaced: &Replaced)
 }
 
 /// Calls `f` on every leaf of a subformula's atoms. Shared parts are visited once.
-pub(super) fn leaves(formula: &Formula, root: FormulaId, f: &mut impl FnMut(&PathLeaf)) {
+pub(crate) fn leaves(formula: &Formula, root: FormulaId, f: &mut impl FnMut(&PathLeaf)) {
     let mut seen = BTreeSet::from([root]);
     let mut stack = vec![root];
     while let Some(id) = stack.pop() {

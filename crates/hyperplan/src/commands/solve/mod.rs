@@ -3,6 +3,7 @@
 mod lanes;
 
 use crate::args::{self, Part, SolveFormat};
+use crate::commands::explain;
 use crate::config;
 use crate::explain::{Explain, Why};
 use crate::failure::{Exit, Failure, Result};
@@ -16,7 +17,7 @@ use crate::parameter::{Parameter, Searched};
 use crate::pictures::{Picture, Subject};
 use crate::plans;
 use crate::proof::{Prover, Said};
-use crate::report::json;
+use crate::report::{json, paths_text};
 use crate::waiting::Waiting;
 use crate::wish::Wish;
 use hyperplan_outlet::one_line;
@@ -26,17 +27,11 @@ use hyperplan_problem::answer::{
     Answer, Below, Case, CostValue, Failed, Ordered, ReasonCode, Seconds, Size, Solver, Verdict, Verified,
     WitnessPath, to_witness,
 };
-use hyperplan_problem::{Objective, Quantifier, Strategy, Target, Trace, display};
-use hyperplan_render::{Board, Scene, TextStyle, actions_line, can_draw, table, text_map};
+use hyperplan_problem::{Objective, Problem, Quantifier, Strategy, Target, display};
+use hyperplan_render::{Scene, can_draw};
 use lanes::Team;
 use std::path::Path;
 use std::time::{Duration, Instant};
-
-/// Larger maps are left to `--plot`.
-const MAP_COLUMNS: u32 = 64;
-const MAP_ROWS: u32 = 40;
-/// Longer tables are left to `--save`.
-const TABLE_ROWS: usize = 60;
 
 pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Output) -> Result {
     Team::check(args)?;
@@ -87,7 +82,10 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
             continue;
         }
         let foreign = args.problem.foreign.as_ref();
-        let found = Found { loaded, objective, outcome: &outcome, answer: &answer, searched, foreign };
+        let short = args.format == SolveFormat::Text && !quiet;
+        let reason = if short { in_short(about, &outcome, &config.plan) } else { None };
+        let found =
+            Found { loaded, objective, outcome: &outcome, answer: &answer, searched, reason, foreign };
         if let Some(path) = &config.save {
             // Before anything else that may fail.
             saved = match PlanFormat::of_file(path) {
@@ -261,7 +259,12 @@ fn solve(
     };
     if let Wish::Constant(parameter) = wish {
         return match parameter.least(loaded, objective, config, explain) {
-            Ok((outcome, searched)) => Ok((outcome, Some(searched), Costs::default())),
+            Ok((outcome, searched)) => {
+                let problem = &searched.loaded.problem;
+                let objective = problem.objective(name).unwrap_or(objective);
+                let outcome = straight(problem, objective, outcome, team);
+                Ok((outcome, Some(searched), Costs::default()))
+            }
             Err(error) => Err(unsolved(name, parameter, error, explain)),
         };
     }
@@ -269,7 +272,7 @@ fn solve(
     if targets.is_empty() {
         let outcome = plan::solve(&loaded.problem, objective, config);
         return outcome
-            .map(|outcome| (outcome, None, Costs::default()))
+            .map(|outcome| (straight(&loaded.problem, objective, outcome, team), None, Costs::default()))
             .map_err(|error| failed(&error, String::new()));
     }
     let found = plan::cheapest(&loaded.problem, objective, &targets, config);
@@ -298,6 +301,39 @@ fn unsolved(
             (explain.failure(about, &error), error.code())
         }
     }
+}
+
+/// The answer with a strategy without detours, unless the first is wanted.
+fn straight(
+    problem: &Problem,
+    objective: &Objective,
+    outcome: plan::Outcome,
+    team: &Team<'_>,
+) -> plan::Outcome {
+    if team.args.first {
+        return outcome;
+    }
+    let deadline = team.config.deadline.within(plan::time_for(problem, objective, &outcome));
+    plan::straightened(problem, objective, outcome, team.config, &deadline).outcome
+}
+
+/// How long may be thought about why there is no strategy.
+const REASONS: Duration = Duration::from_millis(500);
+
+/// Why an objective is unrealizable, on one line, if that is soon found.
+fn in_short(
+    (loaded, objective): (&Loaded, &Objective),
+    outcome: &plan::Outcome,
+    config: &plan::Config,
+) -> Option<String> {
+    if outcome.verdict != Verdict::Unrealizable {
+        return None;
+    }
+    guard::doing("looking for reasons");
+    let config = plan::Config { deadline: config.deadline.within(REASONS), queries: None, ..config.clone() };
+    // What fails here took nothing from the answer.
+    let found = plan::explain::in_short(&loaded.problem, objective, outcome, &config).ok()?;
+    explain::in_short(loaded, objective, &found)
 }
 
 fn status(answer: &Answer) -> Exit {
@@ -365,6 +401,8 @@ struct Found<'a> {
     outcome: &'a plan::Outcome,
     answer: &'a Answer,
     searched: Option<&'a Searched>,
+    /// Why there is no strategy, or how the counterexample makes the objective fail, on one line.
+    reason: Option<String>,
     /// The files of another tool, if it was these.
     foreign: Option<&'a Foreign>,
 }
@@ -473,9 +511,10 @@ impl<'a> Found<'a> {
     fn text(&self, verbose: bool, color: bool) -> String {
         let mut text = self.verdict_line();
         text.push_str(&format!("\nhorizon: {}\n", self.horizons()));
-        if let Some(strategy) = &self.outcome.witness {
-            text.push_str(&self.strategy(strategy, color));
+        if self.outcome.witness.is_some() {
+            text.push_str(&self.strategy(color));
         }
+        text.extend(self.reason.iter().map(|why| format!("{}\n", one_line(why))));
         text.push_str(&self.checked());
         match self.answer.certificates.as_slice() {
             [] => {}
@@ -496,37 +535,13 @@ impl<'a> Found<'a> {
         each.collect::<Vec<_>>().join(", ")
     }
 
-    fn strategy(&self, strategy: &Strategy, color: bool) -> String {
+    fn strategy(&self, color: bool) -> String {
         let mut text = String::new();
         if self.objective.paths.first().map(|p| p.quantifier) == Some(Quantifier::Forall) {
             text.push_str("counterexample:\n");
         }
-        for trace in &strategy.traces {
-            let actions = actions_line(&self.loaded.problem, self.objective, trace);
-            text.push_str(&format!("{}: {actions}\n", self.name(trace)));
-        }
-        let (drawn, written): (Vec<Trace>, Vec<Trace>) =
-            strategy.traces.iter().cloned().partition(|trace| self.is_drawable(trace));
-        if !drawn.is_empty()
-            && let Ok(map) = text_map(Scene { traces: &drawn, ..self.scene() }, TextStyle { color })
-        {
-            text += &format!("\n{map}");
-        }
-        for trace in written.iter().filter(|t| t.states.len() <= TABLE_ROWS) {
-            let name = self.name(trace);
-            text.push_str(&format!("\n{name}:\n{}", table(&self.loaded.problem, self.objective, trace)));
-        }
+        text += &paths_text(self.scene(), color);
         text + "\n"
-    }
-
-    fn name(&self, trace: &Trace) -> &str {
-        self.objective.paths.get(trace.path).map_or("", |p| p.name.as_str())
-    }
-
-    fn is_drawable(&self, trace: &Trace) -> bool {
-        let system = self.objective.paths.get(trace.path).map(|p| &self.loaded.problem.systems[p.system]);
-        let board = system.and_then(|s| Board::of(s).ok());
-        board.is_some_and(|b| b.width <= MAP_COLUMNS && b.height <= MAP_ROWS)
     }
 
     fn checked(&self) -> String {
