@@ -44,8 +44,11 @@ pub enum Rest {
 
 /// The pass may take one in so many parts of the time that the search took, but so much at least, and no more than this.
 const SHARE: f64 = 0.25;
-const LEAST: Duration = Duration::from_millis(50);
+const LEAST: Duration = Duration::from_millis(10);
 const MOST: Duration = Duration::from_secs(1);
+
+/// With less time nothing is asked for. What was found so soon was found by going where less is left to do, and has few detours.
+const WORTH_ASKING: Duration = Duration::from_millis(25);
 
 /// What it may cost to check a strategy with a loop cut out.
 const CHECK: Budget = Budget { states: 100_000, entries: 1_000_000, moves: 2_000_000 };
@@ -104,6 +107,7 @@ pub fn straightened(
     pass.cut(&mut best);
     let config = Config { deadline: deadline.clone(), queries: None, rivals: Vec::new(), ..config.clone() };
     let least = match pass.rest {
+        _ if deadline.remaining().is_some_and(|left| left < WORTH_ASKING) => false,
         Rest::Absorbed => pass.absorb_sooner(&mut best, &outcome, &config),
         Rest::Owing => pass.owe_less(&mut best, &config),
     };

@@ -218,8 +218,9 @@ mod tests {
         }
     }
 
-    /// Where or how runs are done, which changes nothing of what they are. Every other option is part of what a plan says.
-    const ELSEWHERE: [&str; 15] = [
+    /// Where or how runs are done and judged, which changes nothing of what they are. Every other option is part of what a plan says.
+    const ELSEWHERE: [&str; 16] = [
+        "certified",
         "jobs",
         "pin",
         "out",

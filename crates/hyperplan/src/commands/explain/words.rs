@@ -44,7 +44,8 @@ pub(crate) fn in_short(loaded: &Loaded, objective: &Objective, found: &Explanati
             }
             1 => format!("why: {parts} cannot be met; {more}"),
             _ if core.minimal => format!("why: {parts} exclude each other; {more}"),
-            _ => format!("why: {parts} exclude each other, perhaps some of them alone; {more}"),
+            // Which of them do was not found out so soon, and that all do is no news.
+            _ => "why: `hyperplan explain` says, given time".to_owned(),
         });
     }
     let failure = found.counterexample.as_ref()?;

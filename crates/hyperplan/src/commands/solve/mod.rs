@@ -317,8 +317,9 @@ fn straight(
     plan::straightened(problem, objective, outcome, team.config, &deadline).outcome
 }
 
-/// How long may be thought about why there is no strategy.
+/// How long may be thought about why there is no strategy, if no longer than it took to find that out, and how long in any case.
 const REASONS: Duration = Duration::from_millis(500);
+const REASONS_ANYWAY: Duration = Duration::from_millis(100);
 
 /// Why an objective is unrealizable, on one line, if that is soon found.
 fn in_short(
@@ -330,7 +331,9 @@ fn in_short(
         return None;
     }
     guard::doing("looking for reasons");
-    let config = plan::Config { deadline: config.deadline.within(REASONS), queries: None, ..config.clone() };
+    let plan::Seconds { encode, solve, .. } = outcome.seconds;
+    let time = Duration::try_from_secs_f64(encode + solve).unwrap_or(REASONS).clamp(REASONS_ANYWAY, REASONS);
+    let config = plan::Config { deadline: config.deadline.within(time), queries: None, ..config.clone() };
     // What fails here took nothing from the answer.
     let found = plan::explain::in_short(&loaded.problem, objective, outcome, &config).ok()?;
     explain::in_short(loaded, objective, &found)
