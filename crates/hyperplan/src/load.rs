@@ -73,7 +73,8 @@ impl Loaded {
         let names: Vec<&str> = objectives.iter().map(|o| o.name.as_str()).collect();
         match name {
             _ if objectives.is_empty() => Err(Failure::input(format_args!("{} has no objective", self.file))),
-            Some("all") => Ok(objectives),
+            // Where one is called so, it is meant.
+            Some("all") if self.problem.objective("all").is_none() => Ok(objectives),
             Some(name) => match self.problem.objective(name) {
                 Some(objective) => Ok(vec![objective]),
                 None => {
@@ -200,7 +201,7 @@ impl Given {
         name: Option<&str>,
     ) -> Result<Vec<(&'a Objective, Strategy)>> {
         let failure = |message: String| Failure::input(format_args!("{}: {message}; {DESCRIBED}", self.name));
-        let wanted = name.filter(|n| *n != "all");
+        let wanted = name.filter(|n| *n != "all" || loaded.problem.objective(n).is_some());
         let fits = |answer: &&StrategyFile| match (wanted, &answer.objective) {
             (Some(wanted), Some(own)) => wanted == own,
             _ => true,

@@ -74,6 +74,24 @@ fn several_objectives_need_a_choice() {
 }
 
 #[test]
+fn an_objective_may_be_called_all() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("named.hp");
+    let system = "system S { state x: 0..3; action go; init x == 0; on go when x < 3 { x' = x + 1; } on go when x == 3 {} }";
+    let objectives =
+        "objective all { exists p. F[0,3] x[p] == 3 } objective other { exists p. F[0,1] x[p] == 3 }";
+    std::fs::write(&file, format!("{system}\n{objectives}")).expect("writable");
+    let run = hyperplan(&["solve", text(&file), "--objective", "all", "--format", "json"]);
+    let names: Vec<_> = run.json().iter().map(|answer| answer["objective"].clone()).collect();
+    assert_eq!((run.status, names), (0, vec!["all".into()]), "{}", run.stderr);
+    let out = folder.path().join("out");
+    let run = hyperplan(&["compare", text(&file), "--solver", "builtin", "--out", text(&out)]);
+    assert_eq!(run.status, 0, "{}{}", run.stdout, run.stderr);
+    assert!(run.stdout.contains("#all") && run.stdout.contains("#other"), "{}", run.stdout);
+    assert!(!run.stdout.contains("error "), "{}", run.stdout);
+}
+
+#[test]
 fn all_objectives_in_turn_and_the_largest_status() {
     let run = hyperplan(&["solve", "rooms.hp", "--objective", "all", "--format", "json", "--set", "T=3"]);
     let verdicts: Vec<_> =
