@@ -149,7 +149,7 @@ const SHORT: Error = Error::Malformed { what: "a counterexample is no path of it
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct BranchFile {
-    #[serde(default, skip_serializing_if = "is_none")]
+    #[serde(default, skip_serializing_if = "is_zero")]
     after: usize,
     instances: Vec<InstanceFile>,
 }
@@ -185,17 +185,11 @@ struct StepFile {
     times: u64,
 }
 
+fn is_zero<N: Default + PartialEq>(n: &N) -> bool {
+    *n == N::default()
+}
+
 // Serde asks by reference.
-#[allow(clippy::trivially_copy_pass_by_ref)]
-fn is_none(n: &usize) -> bool {
-    *n == 0
-}
-
-#[allow(clippy::trivially_copy_pass_by_ref)]
-fn is_zero(n: &u32) -> bool {
-    *n == 0
-}
-
 #[allow(clippy::trivially_copy_pass_by_ref)]
 fn is_one(n: &u64) -> bool {
     *n == 1
