@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::embedded::{BUILTIN, Engine, backend, names};
+use crate::embedded::{BUILTIN, Engine, backend, for_dialogue, names};
 use crate::error::Error;
 use crate::external::{self, Spec};
 use crate::session::{Options, Quantifiers, Session};
@@ -63,7 +63,9 @@ pub fn open(spec: &Spec, options: &Options) -> Result<Box<dyn Session>, Error> {
         Spec::Builtin | Spec::Backend(_) => {
             let name = spec.name();
             external::demand_at_most(options, Quantifiers::None, name)?;
-            let backend = backend(name).ok_or_else(|| unknown(name))??;
+            let best = backend(name).ok_or_else(|| unknown(name))??;
+            let ours = *spec == Spec::Builtin && options.incremental;
+            let backend = ours.then(for_dialogue).flatten().unwrap_or(best);
             Ok(Box::new(Engine::new(name, backend, options)?))
         }
         Spec::Profile(name) => match external::profile(name) {

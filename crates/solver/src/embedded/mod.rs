@@ -17,8 +17,10 @@ mod table;
 mod trace;
 #[cfg(feature = "cadical")]
 mod traced;
+#[cfg(feature = "cadical")]
+mod turns;
 mod worker;
 
 pub(crate) use engine::Engine;
 pub use refute::Refuter;
-pub(crate) use table::{BUILTIN, backend, names};
+pub(crate) use table::{BUILTIN, backend, for_dialogue, names};

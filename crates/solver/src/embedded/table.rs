@@ -4,6 +4,8 @@ use super::backend::Backend;
 use super::batsat::BatSat;
 #[cfg(feature = "cadical")]
 use super::cadical::Cadical;
+#[cfg(feature = "cadical")]
+use super::turns::Turns;
 use super::worker::{Serve, serve};
 use crate::error::Error;
 
@@ -62,4 +64,16 @@ pub(crate) fn backend(name: &str) -> Option<Result<Built, Error>> {
     }?;
     let what = || format!("this build has no {name}: it takes the cargo feature {name}");
     Some(row.built.ok_or_else(|| Error::Unsupported { what: what() }))
+}
+
+/// What the engine comes with for a dialogue, where nobody names a back end: in this build, all there are.
+#[cfg(feature = "cadical")]
+pub(crate) fn for_dialogue() -> Option<Built> {
+    Some(Built::of::<Turns>())
+}
+
+/// What the engine comes with for a dialogue, where nobody names a back end: in this build, what it always comes with.
+#[cfg(not(feature = "cadical"))]
+pub(crate) fn for_dialogue() -> Option<Built> {
+    None
 }
