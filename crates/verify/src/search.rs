@@ -7,7 +7,7 @@ use crate::level::{Level, levels};
 use crate::progress::Progress;
 use crate::recent::Recent;
 use crate::report::{Budget, Error, Reached, Stop};
-use crate::residual::{AtomId, ResidualId, Residuals};
+use crate::residual::{AtomId, Residual, ResidualId, Residuals};
 use crate::valuation::{ValuationId, Valuations};
 use crate::value::{Sets, ValueId};
 use hyperplan_problem::{ActionId, Mode, Objective, PathId, Problem, SystemId};
@@ -32,6 +32,8 @@ pub(crate) struct Search<'p> {
     pub(crate) atoms: TiVec<AtomId, Atom>,
     pub(crate) residuals: Residuals,
     pub(crate) root: ResidualId,
+    /// Whether a residual reads paths of the innermost block, as far as it was asked.
+    pub(crate) reads_innermost: TiVec<ResidualId, bool>,
     pub(crate) progress: Progress,
     pub(crate) valuations: Valuations,
     pub(crate) recent: Recent,
@@ -81,6 +83,7 @@ impl<'p> Search<'p> {
             atoms,
             residuals,
             root,
+            reads_innermost: TiVec::new(),
             progress: Progress::new(usize::try_from(budget.entries).unwrap_or(usize::MAX)),
             systems: objective.paths.iter().map(|p| p.system).collect(),
             mode: objective.mode,
@@ -94,6 +97,26 @@ impl<'p> Search<'p> {
             budget: *budget,
             reached: Reached::default(),
         })
+    }
+
+    /// Whether a residual reads paths of the innermost block.
+    pub(crate) fn reads_innermost(&mut self, residual: ResidualId) -> bool {
+        let Search { atoms, levels, residuals, reads_innermost: known, .. } = self;
+        let innermost = levels.last().and_then(|level| level.joint.paths.first());
+        // Paths are numbered from the outside, and operands are there before what is built from them.
+        for at in (known.len()..=usize::from(residual)).map(ResidualId::from) {
+            let reads = match residuals.get(at) {
+                Residual::Constant(_) => false,
+                Residual::Literal { atom, .. } => {
+                    innermost.is_some_and(|(first, _)| atoms[*atom].paths.last() >= Some(first))
+                }
+                Residual::Connected(_, operands) => operands.iter().any(|&operand| known[operand]),
+                Residual::Next(_, operand) => known[*operand],
+                Residual::Temporal(_, _, lhs, rhs) => known[*lhs] || known[*rhs],
+            };
+            known.push(reads);
+        }
+        known[residual]
     }
 
     /// How far it got.

@@ -11,6 +11,7 @@ use crate::search::Search;
 use crate::valuation::ValuationId;
 use crate::value::{Pair, ValueId};
 use hyperplan_problem::{Mode, PathId};
+use rustc_hash::FxHashSet;
 use std::rc::Rc;
 use typed_index_collections::TiVec;
 
@@ -138,6 +139,9 @@ impl Search<'_> {
         }
         pairs.sort_unstable();
         pairs.dedup();
+        if level + 1 == self.levels.len() {
+            self.drop_alike(&mut pairs);
+        }
         match pairs.as_slice() {
             [] => Ok(ValueId::of(!decisive)),
             [(_, ValueId::MISSING)] => Ok(ValueId::MISSING),
@@ -148,6 +152,16 @@ impl Search<'_> {
                 Ok(id)
             }
         }
+    }
+
+    /// Of the prefixes of the innermost block of which the rest of the formula asks no more, and the same of other paths, keeps
+    /// the first. All of them can go on, and nothing depends on how.
+    fn drop_alike(&mut self, pairs: &mut Vec<Pair>) {
+        let mut asked = FxHashSet::default();
+        pairs.retain(|&(_, value)| {
+            let read = value == ValueId::MISSING || self.reads_innermost(ResidualId(value.0));
+            read || asked.insert(value)
+        });
     }
 
     /// Everything on which the value of a level after this step can depend.
