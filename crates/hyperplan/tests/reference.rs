@@ -65,9 +65,27 @@ fn main() {
     }
     trials.push(Trial::test("readme::own_map", || Ok(readme::own_map()?)));
     trials.push(Trial::test("readme::tour", || Ok(readme::tour()?)));
+    trials.push(Trial::test("answers::reason_codes", || Ok(reason_codes()?)));
     trials.push(Trial::test("few_are_not_run", move || Ok(are_few(&not_run)?)));
     trials.push(Trial::test("pictures_are_shown", move || Ok(are_shown(&pictures)?)));
     libtest_mimic::run(&arguments, trials).exit();
+}
+
+/// `answers.md` has a row for each reason code of the schema, and no other.
+fn reason_codes() -> Result<(), String> {
+    let read =
+        |name: &str| std::fs::read_to_string(Path::new(DOCS).join(name)).map_err(|error| error.to_string());
+    let schema: serde_json::Value =
+        serde_json::from_str(&read("answer.schema.json")?).map_err(|error| error.to_string())?;
+    let codes = schema["$defs"]["ReasonCode"]["oneOf"].as_array().ok_or("the schema has no reason codes")?;
+    let mut codes: Vec<&str> = codes.iter().filter_map(|code| code["const"].as_str()).collect();
+    let page = read("answers.md")?;
+    let (_, section) = page.split_once("\n## Reasons\n").ok_or("there is no section `Reasons`")?;
+    let rows = section.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next());
+    let mut rows: Vec<&str> = rows.collect();
+    codes.sort_unstable();
+    rows.sort_unstable();
+    if rows == codes { Ok(()) } else { Err(format!("the schema has {codes:?}, the page {rows:?}")) }
 }
 
 /// Puts `specs/` beside what commands write.

@@ -82,9 +82,10 @@ fn below(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(top().join(folder)).expect("it is there");
     let mut names: Vec<_> = entries.map(|entry| entry.expect("readable").file_name()).collect();
     names.sort();
-    let files = names.iter().map(|name| folder.join(name)).flat_map(|file| {
-        if top().join(&file).is_dir() { below(&file) } else { vec![file] }
-    });
+    let files = names
+        .iter()
+        .map(|name| folder.join(name))
+        .flat_map(|file| if top().join(&file).is_dir() { below(&file) } else { vec![file] });
     files.filter(|file| file.extension().is_some_and(|end| end == "md")).collect()
 }
 
@@ -100,7 +101,9 @@ fn every_page_is_a_chapter() {
         let (shown, page) = (file.display(), Page::read(&file));
         match chapters.get(&file).map(Vec::as_slice) {
             Some([title]) if page.headings().next() == Some(title) => {}
-            Some([title]) => found.push(format!("{shown}: {SUMMARY} calls it `{title}`: begin it with that heading")),
+            Some([title]) => {
+                found.push(format!("{shown}: {SUMMARY} calls it `{title}`: begin it with that heading"))
+            }
             Some(_) => found.push(format!("{SUMMARY}: {shown} is a chapter more than once")),
             None => found.push(format!("{shown}: make it a chapter of {SUMMARY}")),
         }

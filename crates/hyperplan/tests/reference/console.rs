@@ -69,7 +69,8 @@ fn rewrite(file: &Path, anew: &[(&Block, String)]) -> Result<(), String> {
 
 /// That the picture in the book is what a command of the page has drawn.
 fn picture(folder: &Path, name: &str, update: bool) -> Result<(), String> {
-    let drawn = std::fs::read(folder.join(name)).map_err(|error| format!("no command draws {name}: {error}"))?;
+    let drawn =
+        std::fs::read(folder.join(name)).map_err(|error| format!("no command draws {name}: {error}"))?;
     let kept = Path::new(DOCS).join("pictures").join(name);
     if update {
         return std::fs::write(kept, drawn).map_err(|error| error.to_string());
@@ -115,7 +116,11 @@ fn shell(folder: &Path, line: &str) -> Result<(bool, String), String> {
     let others = std::env::var_os("PATH").unwrap_or_default();
     let places = [program.to_owned()].into_iter().chain(std::env::split_paths(&others));
     let mut shell = Command::new("sh");
-    shell.args(["-c", &format!("exec 2>&1\n{line}")]).current_dir(folder).stdin(Stdio::null()).env_remove("NO_COLOR");
+    shell
+        .args(["-c", &format!("exec 2>&1\n{line}")])
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .env_remove("NO_COLOR");
     shell.env("PATH", std::env::join_paths(places).map_err(|error| error.to_string())?);
     shell.env("XDG_CONFIG_HOME", folder.join(".config"));
     let output = shell.output().map_err(|error| format!("sh: {error}"))?;
