@@ -43,7 +43,7 @@ const NOT_RUN: &[(&str, usize)] = &[
     // It takes several machines, or a scheduler.
     ("cluster", 4),
     // It builds the project, or runs for minutes.
-    ("long", 6),
+    ("long", 8),
     // It takes files or programs of others.
     ("others", 4),
 ];
