@@ -13,7 +13,8 @@
 //! | `hp in NAME each` | the same for each line of the block by itself |
 //! | `console` | commands after `$ `, run by a shell, each with what it prints; they may end with `\| head -N`, and have `specs/` beside them |
 //! | `console with SOLVER...` | the same where these are installed |
-//! | `toml solvers` | a configuration: the solvers that it names are known then |
+//! | `toml` | a configuration: the solvers that it names are known then |
+//! | `KIND from FILE` | a part of that file of the repository, which other tests run or read |
 //! | `KIND FILE` | a file of any other kind that problems and commands below may name |
 //! | `KIND not-run REASON` | what is not run, for one of the reasons in [`NOT_RUN`]; options of `hyperplan` in it have to exist |
 //!
@@ -154,8 +155,12 @@ fn trials_of_block(page: &Page, block: &Block, name: &str, folder: &Arc<TempDir>
             let options = move || Ok(console::options_exist(folder.path(), &text)?);
             vec![listed, Trial::test(format!("{line}::options"), options)]
         }
-        ["toml", "solvers"] => {
+        ["toml"] => {
             vec![Trial::test(line, move || Ok(console::is_configuration(folder.path(), &text)?))]
+        }
+        [_, "from", file] => {
+            let file = Path::new(DOCS).join("..").join(file);
+            vec![Trial::test(line, move || Ok(page::is_part(&text, &file)?))]
         }
         ["hp", file] | ["hp", "doubtful", file] => {
             write(file);

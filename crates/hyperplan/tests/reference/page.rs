@@ -90,3 +90,14 @@ impl Page {
         }
     }
 }
+
+/// That the text is a part of the file, but for how far it is indented.
+pub(crate) fn is_part(text: &str, file: &Path) -> Result<(), String> {
+    let whole = std::fs::read_to_string(file).map_err(|error| format!("{}: {error}", file.display()))?;
+    let (whole, shown): (Vec<&str>, Vec<&str>) = (whole.lines().collect(), text.lines().collect());
+    let found = whole.windows(shown.len().max(1)).any(|part| {
+        let indent = &part[0][..part[0].len() - part[0].trim_start().len()];
+        part.iter().zip(&shown).all(|(line, shown)| line.strip_prefix(indent).unwrap_or(line) == *shown)
+    });
+    if found { Ok(()) } else { Err(format!("this is no part of {}:\n{text}", file.display())) }
+}
