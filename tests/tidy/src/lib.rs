@@ -1,10 +1,12 @@
 //! What holds the house up, as tests: which crate and which module may know of which, that no file is dead, how long
-//! files and functions may be, and what only the command knows. They read the sources and need nothing else of the
-//! workspace, so that they are the first to run: `cargo test -p hyperplan-tidy`.
+//! files and functions may be, what only the command knows, and that the book is whole. They read the sources and need
+//! nothing else of the workspace, so that they are the first to run: `cargo test -p hyperplan-tidy`.
 //!
 //! Each message begins with a place and ends with what to do. An exception is a line in a table here, with its reason;
 //! one that is no longer needed is reported like what is missing.
 
+#[cfg(test)]
+mod book;
 #[cfg(test)]
 mod crates;
 #[cfg(test)]

@@ -131,7 +131,7 @@ fn file_of(module: &syn::ItemMod, folder: &Path, parent: &Path) -> PathBuf {
 }
 
 /// The path without `..`.
-fn normal(path: &Path) -> PathBuf {
+pub(crate) fn normal(path: &Path) -> PathBuf {
     let mut normal = PathBuf::new();
     for part in path.components() {
         if part.as_os_str() == ".." {

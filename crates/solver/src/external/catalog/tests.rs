@@ -138,7 +138,8 @@ fn lists_are_split_at_commas_outside_of_quotes() {
 #[test]
 fn the_examples_are_good() {
     let page = include_str!("../../../../../docs/solvers.md");
-    let blocks = page.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
+    let blocks = page.split("```toml").skip(1).filter_map(|rest| rest.split("```").next());
+    let blocks = blocks.filter_map(|block| Some(block.split_once('\n')?.1));
     let catalog = with(&blocks.collect::<String>());
     for name in ["cvc4", "z3-old", "mathsat", "opensmt", "smtinterpol", "batch"] {
         assert_eq!(configured(&catalog, name).name, name);
