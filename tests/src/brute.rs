@@ -123,7 +123,9 @@ impl<'a> Brute<'a> {
         dead.then_some("a dead end")
     }
 
-    fn eval(&self, formula: &Formula, paths: &[&Path], t: usize) -> bool {
+    /// Whether a formula holds of these paths at a time.
+    #[must_use]
+    pub fn eval(&self, formula: &Formula, paths: &[&Path], t: usize) -> bool {
         let at = |f: &Formula, t: usize| self.eval(f, paths, t);
         // Positions of the interval that exist.
         let window = |i: &Interval| {

@@ -2,9 +2,7 @@
 //! so much more time is enough, and less is not; some choices of the other player defeat every candidate. And the parts that
 //! fail on a candidate or a counterexample fail.
 
-use hyperplan_plan::explain::{
-    Candidate, Choice, Explanation, Later, Opponents, Scope, explain, longer, parts,
-};
+use hyperplan_plan::explain::{Candidate, Choice, Explanation, Later, Opponents, Scope, explain, longer};
 use hyperplan_plan::{Config, Outcome, Verdict, solve};
 use hyperplan_problem::{Problem as Typed, Value};
 use hyperplan_solver::{Deadline, Spec};
@@ -125,7 +123,7 @@ fn judge(
     seen: &mut Seen,
 ) {
     assert_eq!(outcome.witness.is_some(), found.counterexample.is_some(), "{about}");
-    let all = parts(&typed.objectives[0].formula);
+    let all = typed.objectives[0].formula.parts();
     let own = conjuncts(&problem.formula);
     // What one atom is written as may be several parts, or one that stands there twice be one.
     let index = |part| all.iter().position(|&other| other == part).filter(|_| all.len() == own.len());

@@ -16,6 +16,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use hyperplan_family as family;
 use hyperplan_import::Known;
+use hyperplan_problem::Difference;
 use hyperplan_problem::answer::{Quantifiers, States, WitnessPath};
 use std::path::PathBuf;
 
@@ -138,6 +139,16 @@ fn states() -> impl TypedValueParser<Value = Option<States>> {
     PossibleValuesParser::new(values).map(|name| name.parse().ok())
 }
 
+/// What strategies may differ in, with what it means.
+fn differences() -> impl TypedValueParser<Value = Difference> {
+    let help = |value| match value {
+        Difference::Cells => "Where paths are: cells of maps, nodes of graphs, else all variables",
+        Difference::Actions => "What paths do",
+    };
+    let values = Difference::ALL.iter().map(|&value| PossibleValue::new(value.name()).help(help(value)));
+    PossibleValuesParser::new(values.collect::<Vec<_>>()).try_map(|name| name.parse())
+}
+
 /// How a query is built.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct Encoding {
@@ -218,6 +229,17 @@ pub(crate) struct Solve {
     /// Or finds the cheapest strategy: `cost fuel[p]`, in place of what the objective says after `minimize`
     #[arg(long, value_name = "CONST[=LO..HI]|EXPR", value_parser = wish)]
     pub(crate) minimize: Option<Wish>,
+    /// Among strategies that are equal in what is to be minimized, prefers those with the least sums of costs, such as
+    /// `cost turns[p]`, what counts most first, and proves that none has less
+    #[arg(long, value_name = "EXPR", value_parser = sums)]
+    pub(crate) prefer: Option<String>,
+    /// Finds up to N strategies (or counterexamples), each of which differs from those before it, and says whether there are
+    /// others
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=10_000), conflicts_with = "cube")]
+    pub(crate) all: Option<u16>,
+    /// In what the strategies of --all differ while their paths are not at rest
+    #[arg(long, value_parser = differences(), value_name = "WHAT", default_value_t = Difference::Cells, requires = "all")]
+    pub(crate) differ: Difference,
     /// Draws the paths into an .svg, .png, .pdf, .gif, .html or .txt file, as `plot` does
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
@@ -488,6 +510,9 @@ pub(crate) struct Plot {
     /// Makes an SVG that moves by itself
     #[arg(long, requires = "output")]
     pub(crate) animate: bool,
+    /// Which of several strategies of the file is drawn, from 1
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) number: Option<u16>,
     /// Draws these paths only; without it, those of the strategy, and of the paths that it has to cope with the worst
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) path: Vec<String>,
@@ -595,6 +620,18 @@ fn range(text: &str) -> Result<(String, i64, i64), String> {
 fn wish(text: &str) -> Result<Wish, String> {
     // Costs are read of paths, and neither constants nor ranges have brackets.
     if text.contains('[') { Ok(Wish::Costs(text.to_owned())) } else { minimize(text).map(Wish::Constant) }
+}
+
+/// Sums of costs of paths.
+fn sums(text: &str) -> Result<String, String> {
+    match text.contains('[') {
+        true => Ok(text.to_owned()),
+        false => {
+            Err("expected costs of paths, such as `cost turns[p]`; what a step costs is said in the system, \
+                      `cost turns = ...;`"
+                .to_owned())
+        }
+    }
 }
 
 fn minimize(text: &str) -> Result<Minimize, String> {

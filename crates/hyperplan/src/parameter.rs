@@ -3,7 +3,7 @@
 use crate::args::{self, Minimize};
 use crate::explain::{Explain, Why};
 use crate::failure::{Failure, Result};
-use crate::load::{self, Loaded};
+use crate::load::{self, Consts, Loaded};
 use crate::output::Output;
 use hyperplan_plan::{self as plan, Config, Least, MinimizeError, Verdict, minimize};
 use hyperplan_problem::answer::{Below, Minimized};
@@ -30,7 +30,7 @@ impl<'a> Parameter<'a> {
         args: &'a args::Problem,
         wanted: &'a Minimize,
         out: &Output,
-    ) -> Result<(Self, Loaded)> {
+    ) -> Result<(Self, Loaded, Consts)> {
         let constant = wanted.constant.as_str();
         let start = Instant::now();
         let text = load::text(args)?;
@@ -68,7 +68,7 @@ impl<'a> Parameter<'a> {
             }
         }
         let (loaded, consts) = Loaded::of(&with(range.map(|(lo, _)| lo)), read, start, out)?;
-        let value = consts.into_iter().find(|(name, _)| name == constant).map(|(_, value)| value);
+        let value = consts.iter().find(|(name, _)| name == constant).map(|(_, value)| *value);
         let value = match value {
             Some(Value::Int(value)) => value,
             Some(_) => {
@@ -96,7 +96,7 @@ impl<'a> Parameter<'a> {
             let lo = (0..value).find(|&value| !parameter.lower(value).0.has_errors()).unwrap_or(value);
             parameter.range = lo..=value;
         }
-        Ok((parameter, loaded))
+        Ok((parameter, loaded, consts))
     }
 
     /// The least value for which an objective is realizable. `base` is the file for another value.

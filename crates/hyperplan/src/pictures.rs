@@ -3,6 +3,7 @@
 use crate::failure::{Failure, Result};
 use crate::files::write_bytes;
 use crate::others::{Shown, shown, variants};
+use crate::plans::with_name;
 use hyperplan_horizon::horizons;
 use hyperplan_problem::{Objective, Problem, Strategy};
 use hyperplan_render::{Film, Page, Scene, TextStyle, page, pdf, png, svg, text_map};
@@ -56,11 +57,9 @@ impl Picture {
         }
     }
 
-    /// The file for one of several objectives: its name goes before the extension.
-    pub(crate) fn for_objective(&self, name: &str) -> Self {
-        let stem = self.path.file_stem().unwrap_or_default().to_string_lossy();
-        let extension = self.path.extension().unwrap_or_default().to_string_lossy();
-        Picture { path: self.path.with_file_name(format!("{stem}-{name}.{extension}")), kind: self.kind }
+    /// The file for one of several: a name goes before the extension.
+    pub(crate) fn with_name(&self, name: &str) -> Self {
+        Picture { path: with_name(&self.path, name), kind: self.kind }
     }
 
     /// Whether it is an SVG, moving or not.

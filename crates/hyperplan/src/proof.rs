@@ -4,7 +4,7 @@ use crate::failure::{Exit, Failure, Result};
 use crate::files;
 use crate::load::Loaded;
 use crate::output::Output;
-use crate::wish::Wish;
+use crate::wish::{Smallest, Wish};
 use hyperplan_certify::{Benchmark, Bound, Certificate, Claim, Error, compress, with_bounds};
 use hyperplan_compare::plan::sha256;
 use hyperplan_plan::{Proved, Unproved, Verdict, prove};
@@ -46,7 +46,8 @@ impl Subject<'_> {
     fn name(&self) -> String {
         let name = &self.objective.name;
         match (self.value, self.costs.len()) {
-            (Some((constant, value)), _) => format!("{name}-{constant}={value}"),
+            (Some((constant, value)), 0) => format!("{name}-{constant}={value}"),
+            (Some((constant, value)), number) => format!("{name}-{constant}={value}-cost-{number}"),
             (None, 0) => name.clone(),
             (None, number) => format!("{name}-cost-{number}"),
         }
@@ -67,8 +68,8 @@ impl Prover<'_> {
     ) -> Result<(Vec<String>, Exit)> {
         let mut made = (Vec::new(), Exit::Good);
         let claims = claims(objective, said.verdict);
-        match (wish, said.minimized) {
-            (Wish::Constant(parameter), Some(minimized)) => {
+        match (&wish.smallest, said.minimized) {
+            (Smallest::Constant(parameter), Some(minimized)) => {
                 let (first, last) = minimized.range;
                 let end = match (minimized.value, minimized.below, Claim::of(objective)) {
                     // A value for which the property holds.
@@ -92,13 +93,18 @@ impl Prover<'_> {
                         break;
                     }
                 }
+                if let (Some(value), Claim::NoStrategy) = (minimized.value, Claim::of(objective)) {
+                    let preferred = (&*wish.preferred(loaded, objective, Some(value))?, said.costs);
+                    let about = (loaded, objective, Some((parameter.constant, value)));
+                    self.costs(about, preferred, &mut made, out)?;
+                }
             }
             _ if claims => {
                 let subject = Subject { problem: &loaded.problem, objective, value: None, costs: Vec::new() };
                 self.one(&subject, &mut made, out)?;
             }
             _ => self.costs(
-                (loaded, objective),
+                (loaded, objective, None),
                 (&wish.targets(loaded, objective)?, said.costs),
                 &mut made,
                 out,
@@ -110,7 +116,7 @@ impl Prover<'_> {
     /// Certifies that no strategy costs less: for each target that none has less of it, of those with no more of the targets before.
     fn costs(
         &self,
-        (loaded, objective): (&Loaded, &Objective),
+        (loaded, objective, value): (&Loaded, &Objective, Option<(&str, i64)>),
         (targets, costs): (&[Target], &[CostValue]),
         made: &mut (Vec<String>, Exit),
         out: &mut Output,
@@ -125,7 +131,7 @@ impl Prover<'_> {
             let named = costs.iter().zip(&bounds).map(bound).collect();
             let (problem, objective) = with_bounds(&loaded.problem, objective, &bounds)
                 .map_err(|error| Failure::new(status(&error), error))?;
-            let subject = Subject { problem: &problem, objective: &objective, value: None, costs: named };
+            let subject = Subject { problem: &problem, objective: &objective, value, costs: named };
             // Where a value need not be the least, nothing is said of those after it.
             if !self.one(&subject, made, out)? || cost.least < cost.value {
                 break;
@@ -137,10 +143,14 @@ impl Prover<'_> {
 
     /// Makes a certificate; whether there is one.
     fn one(&self, subject: &Subject<'_>, made: &mut (Vec<String>, Exit), out: &mut Output) -> Result<bool> {
-        let what = || match (subject.value, subject.costs.last()) {
-            (Some((constant, value)), _) => format!("{} with {constant} = {value}", subject.objective.name),
-            (None, Some(Bound { cost, most })) => format!("{} with {cost} <= {most}", subject.objective.name),
-            (None, None) => subject.objective.name.clone(),
+        let what = || {
+            let value = subject.value.map(|(constant, value)| format!("{constant} = {value}"));
+            let cost = subject.costs.last().map(|Bound { cost, most }| format!("{cost} <= {most}"));
+            let with: Vec<String> = value.into_iter().chain(cost).collect();
+            match with.is_empty() {
+                true => subject.objective.name.clone(),
+                false => format!("{} with {}", subject.objective.name, with.join(", ")),
+            }
         };
         match self.write(subject) {
             Ok(file) => {

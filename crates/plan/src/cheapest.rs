@@ -50,7 +50,24 @@ pub fn cheapest(
     let (objective, time) = to_the_end(problem, objective, targets);
     let graphs = Graphs::default();
     let outcome = solve_sharing(problem, &objective, config, &graphs)?;
-    cheaper((problem, &objective, time), targets, config, outcome, graphs)
+    cheaper(Search::new((problem, &objective, time), targets, config, graphs, &outcome), outcome)
+}
+
+/// As [`cheapest`], of an objective whose paths are long enough to be paid for to the end, among the strategies of which some
+/// targets are at most so large. An answer for the same systems says how states are written.
+pub(crate) fn cheapest_with(
+    problem: &Problem,
+    objective: &Objective,
+    (kept, targets): (&[(Target, i64)], &[Target]),
+    config: &Config,
+    before: &Outcome,
+) -> Result<Cheapest, Error> {
+    let all: Vec<Target> = kept.iter().map(|(target, _)| target).chain(targets).cloned().collect();
+    let (_, time) = to_the_end(problem, objective, &all);
+    let mut search = Search::new((problem, objective, time), targets, config, Graphs::default(), before);
+    search.kept = kept;
+    let outcome = search.ask(kept)?;
+    cheaper(search, outcome)
 }
 
 /// As [`cheapest`], of an objective for which there is an answer; `None` where its paths are not long enough to be paid for to
@@ -64,21 +81,15 @@ pub(crate) fn improved(
 ) -> Option<Result<Cheapest, Error>> {
     let (extended, time) = to_the_end(problem, objective, targets);
     let same = extended.formula.nodes.len() == objective.formula.nodes.len();
-    same.then(|| cheaper((problem, objective, time), targets, config, outcome, Graphs::default()))
+    same.then(|| {
+        let graphs = Graphs::default();
+        cheaper(Search::new((problem, objective, time), targets, config, graphs, &outcome), outcome)
+    })
 }
 
 /// Lowers what an answer's strategy costs.
-fn cheaper(
-    (problem, objective, time): (&Problem, &Objective, u32),
-    targets: &[Target],
-    config: &Config,
-    outcome: Outcome,
-    graphs: Graphs,
-) -> Result<Cheapest, Error> {
-    // A search without queries takes no bounds.
-    let one_by_one = outcome.states.is_enumerated() && config.quantifiers != Quantifiers::Explicit;
-    let spent = Spent::default();
-    let mut search = Search { problem, objective, time, targets, config, graphs, one_by_one, spent };
+fn cheaper(mut search: Search<'_>, outcome: Outcome) -> Result<Cheapest, Error> {
+    let targets = search.targets;
     search.spent.add(&outcome);
     let Some(strategy) = outcome.witness.clone().filter(|_| outcome.verdict == Verdict::Realizable) else {
         return Ok(Cheapest { outcome, values: Vec::new(), undecided: None });
@@ -100,7 +111,7 @@ fn cheaper(
 
 /// The objective with all paths that the targets speak of read to the same time, the last at which any of them is; and that
 /// time.
-fn to_the_end(problem: &Problem, objective: &Objective, targets: &[Target]) -> (Objective, u32) {
+pub(crate) fn to_the_end(problem: &Problem, objective: &Objective, targets: &[Target]) -> (Objective, u32) {
     if let Mode::Within(steps) = objective.mode {
         return (objective.clone(), steps);
     }
@@ -122,6 +133,8 @@ struct Search<'a> {
     /// When the targets are read.
     time: u32,
     targets: &'a [Target],
+    /// Targets that are at most so large in any case.
+    kept: &'a [(Target, i64)],
     config: &'a Config,
     graphs: Graphs,
     /// Whether bounds can be asked for state by state; else they are parts of the objective.
@@ -134,7 +147,21 @@ struct Best {
     values: Vec<i64>,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    /// A search that knows an answer for the same systems.
+    fn new(
+        (problem, objective, time): (&'a Problem, &'a Objective, u32),
+        targets: &'a [Target],
+        config: &'a Config,
+        graphs: Graphs,
+        before: &Outcome,
+    ) -> Self {
+        // A search without queries takes no bounds.
+        let one_by_one = before.states.is_enumerated() && config.quantifiers != Quantifiers::Explicit;
+        let spent = Spent::default();
+        Search { problem, objective, time, targets, kept: &[], config, graphs, one_by_one, spent }
+    }
+
     /// What each target comes to under a strategy, by the checker.
     fn values(&self, strategy: &Strategy) -> Result<Vec<i64>, Error> {
         let value = |target: &Target| {
@@ -214,14 +241,21 @@ impl Search<'_> {
     /// What targets may come to: those before what was found of them, and one so much.
     fn bounds(&self, at: usize, bound: i64, best: &Best) -> Vec<(Target, i64)> {
         let before = self.targets[..at].iter().cloned().zip(best.values.iter().copied());
-        before.chain([(self.targets[at].clone(), bound)]).collect()
+        self.kept.iter().cloned().chain(before).chain([(self.targets[at].clone(), bound)]).collect()
     }
 
     /// Asks for a strategy with a value of at most so much, and with those found of the targets before.
     fn below(&mut self, at: usize, bound: i64, best: &Best) -> Result<Outcome, Error> {
-        let bounds = self.bounds(at, bound, best);
+        self.ask(&self.bounds(at, bound, best))
+    }
+
+    /// Asks for a strategy of which targets are at most so large.
+    fn ask(&mut self, bounds: &[(Target, i64)]) -> Result<Outcome, Error> {
+        if bounds.is_empty() {
+            return solve_sharing(self.problem, self.objective, self.config, &self.graphs);
+        }
         if self.one_by_one {
-            let among = Among { bounds: bounds.clone(), cube: self.config.among.cube.clone() };
+            let among = Among { bounds: bounds.to_vec(), cube: self.config.among.cube.clone() };
             let config = Config { among, ..self.config.clone() };
             match solve_sharing(self.problem, self.objective, &config, &self.graphs) {
                 Err(Error::Encode(encode::Error::TooLarge { .. } | encode::Error::NotEnumerable { .. })) => {
@@ -230,7 +264,7 @@ impl Search<'_> {
                 answer => return answer,
             }
         }
-        let (problem, objective) = bounded(self.problem, self.objective, &bounds, self.time);
+        let (problem, objective) = bounded(self.problem, self.objective, bounds, self.time);
         // Systems that are bounded otherwise are others, with other states to choose a case by: all cases are looked at.
         let config = Config { among: Among::default(), ..self.config.clone() };
         let mut outcome = solve_sharing(&problem, &objective, &config, &Graphs::default())?;

@@ -8,7 +8,7 @@
 
 use crate::cheapest::improved;
 use crate::config::{Config, Outcome, Verdict, Verified};
-use crate::explain::{as_long, parts};
+use crate::explain::as_long;
 use crate::fact::Note;
 use crate::lint::demand::paths as read_paths;
 use crate::prepare::is_existential;
@@ -98,9 +98,21 @@ pub fn straightened(
     config: &Config,
     deadline: &Deadline,
 ) -> Straight {
+    straightened_among(problem, (objective, objective), outcome, config, deadline)
+}
+
+/// As [`straightened`], of an objective that asks for more besides what another one does, whose formula is the beginning of its
+/// own: it is the other one that says when paths are at rest.
+pub(crate) fn straightened_among(
+    problem: &Problem,
+    (objective, plain): (&Objective, &Objective),
+    outcome: Outcome,
+    config: &Config,
+    deadline: &Deadline,
+) -> Straight {
     let found = outcome.verdict == Verdict::Realizable && outcome.verified == Some(Verified::BySearch);
     let first = outcome.witness.clone().filter(|_| found && is_existential(objective));
-    let pass = first.as_ref().and_then(|first| Pass::new(problem, objective, first, deadline));
+    let pass = first.as_ref().and_then(|first| Pass::new(problem, (objective, plain), first, deadline));
     let (Some(pass), Some(mut best)) = (pass, first) else {
         return Straight { outcome, steps: None, least: false };
     };
@@ -123,6 +135,8 @@ pub fn straightened(
 struct Pass<'a> {
     problem: &'a Problem,
     objective: &'a Objective,
+    /// What says when paths are at rest.
+    plain: &'a Objective,
     deadline: &'a Deadline,
     rest: Rest,
     /// The eventualities of each leading path alone.
@@ -133,12 +147,12 @@ impl<'a> Pass<'a> {
     /// `None` where it is not known when paths are at rest.
     fn new(
         problem: &'a Problem,
-        objective: &'a Objective,
+        (objective, plain): (&'a Objective, &'a Objective),
         first: &Strategy,
         deadline: &'a Deadline,
     ) -> Option<Self> {
-        let formula = &objective.formula;
-        let eventualities = parts(formula).into_iter().filter_map(|part| {
+        let formula = &plain.formula;
+        let eventualities = formula.parts().into_iter().filter_map(|part| {
             let own = read_paths(formula, part);
             let [path] = own.as_slice() else { return None };
             matches!(formula.nodes[part], Node::Until(..)).then_some((*path, part))
@@ -146,7 +160,7 @@ impl<'a> Pass<'a> {
         // Nobody waits for more of them to be followed one by one.
         let eventualities = Some(eventualities.collect::<Vec<_>>()).filter(|all| all.len() <= EVENTUALITIES);
         let eventualities = eventualities.unwrap_or_default();
-        let mut pass = Pass { problem, objective, deadline, rest: Rest::Owing, eventualities };
+        let mut pass = Pass { problem, objective, plain, deadline, rest: Rest::Owing, eventualities };
         let owing = pass.steps(first).filter(|_| pass.owes_little());
         pass.rest = Rest::Absorbed;
         let absorbed = pass.steps(first).filter(|_| first.traces.iter().all(|trace| pass.is_absorbed(trace)));
@@ -161,7 +175,7 @@ impl<'a> Pass<'a> {
 
     /// Whether all that is owed over time are eventualities of single paths.
     fn owes_little(&self) -> bool {
-        let formula = &self.objective.formula;
+        let formula = &self.plain.formula;
         let known = |part: &FormulaId| {
             let safe = matches!(formula.nodes[*part], Node::Atom(_)) || formula.globally(*part).is_some();
             safe || self.eventualities.iter().any(|(_, other)| other == part)
@@ -169,7 +183,7 @@ impl<'a> Pass<'a> {
         self.objective.blocks().len() == 1
             && self.objective.semantics.is_none()
             && !self.eventualities.is_empty()
-            && parts(formula).iter().all(known)
+            && formula.parts().iter().all(known)
     }
 
     /// The steps until the paths of a strategy are at rest.
@@ -187,7 +201,7 @@ impl<'a> Pass<'a> {
                 let own = self.eventualities.iter().filter(|(path, _)| *path == trace.path);
                 let mut last = 0;
                 for (_, part) in own {
-                    let mut alone = self.objective.clone();
+                    let mut alone = self.plain.clone();
                     alone.formula.push(Node::And(vec![*part]), self.objective.span);
                     let (holds, time) =
                         settled(self.problem, &alone, strategy, &Budget::default()).ok()??;

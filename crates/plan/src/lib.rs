@@ -3,7 +3,7 @@
 //! [`solve`] decides an objective: quantifiers are handed to the solver, expanded into finitely many cases, or
 //! decided by counterexamples; a strategy is verified by `hyperplan-verify`, which shares nothing with the encoding,
 //! before it is returned. [`minimize()`] finds the least value of a constant with which it can be had, [`cheapest()`] the
-//! strategy that costs least. [`straightened()`] takes detours out of one. [`mod@explain`] says why there is none. [`case()`] is
+//! strategy that costs least. [`straightened()`] takes detours out of one, [`several()`] finds others that differ. [`mod@explain`] says why there is none. [`case()`] is
 //! one of several cases of an objective, for searches side by side. [`emit`] gives the query as a benchmark instead. [`lint`] and
 //! [`lint_systems`] look for what is probably not meant.
 
@@ -27,6 +27,7 @@ mod prepare;
 mod prove;
 mod race;
 mod search;
+mod several;
 mod solve;
 mod watch;
 
@@ -41,5 +42,6 @@ pub use hyperplan_encode::{Error as EncodeError, Limits};
 pub use lint::{Budget, Lints, Uninspected, lint, lint_systems};
 pub use minimize::{Least, MinimizeError, Narrowed, ProblemOf, SHARE, minimize, narrowed};
 pub use prove::{Proved, Unproved, prove};
+pub use several::{Another, More, Several, Wanted, several};
 pub use solve::solve;
 pub use watch::{Stage, Standing, Watch};

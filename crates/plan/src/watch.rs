@@ -35,10 +35,15 @@ pub struct Standing {
     pub value: Option<i64>,
     /// The best value found.
     pub best: Option<i64>,
+    /// Strategies found before, where several are wanted.
+    pub strategies: usize,
 }
 
 impl fmt::Display for Standing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.strategies > 0 {
+            write!(f, "another than the {} found, ", self.strategies)?;
+        }
         let values = [("with", self.value), ("none below", self.least), ("best so far", self.best)];
         for (what, value) in values {
             if let Some(value) = value {

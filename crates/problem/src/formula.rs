@@ -4,6 +4,7 @@ use crate::expr::{Expr, PathLeaf};
 use crate::ids::FormulaId;
 use hyperplan_syntax::Span;
 use hyperplan_syntax::operator::Operator;
+use std::collections::BTreeSet;
 use typed_index_collections::TiVec;
 
 /// A formula as a flat arena: children before parents, so that every pass is a loop.
@@ -96,6 +97,24 @@ impl Formula {
     #[must_use]
     pub fn written(&self, id: FormulaId) -> Option<&Written> {
         self.written[id].as_deref()
+    }
+
+    /// The conjuncts as they are written: what one operator means is not taken apart.
+    #[must_use]
+    pub fn parts(&self) -> Vec<FormulaId> {
+        let mut found = Vec::new();
+        let mut stack = vec![self.root()];
+        while let Some(id) = stack.pop() {
+            match &self.nodes[id] {
+                Node::And(ids) if self.written(id).is_none() && !ids.is_empty() => {
+                    stack.extend(ids.iter().rev());
+                }
+                _ => found.push(id),
+            }
+        }
+        let mut seen = BTreeSet::new();
+        found.retain(|part| seen.insert(*part));
+        found
     }
 
     /// The operands as written.

@@ -3,6 +3,7 @@
 pub mod answer;
 mod bounded;
 pub mod display;
+mod distinct;
 mod edges;
 mod expr;
 mod formula;
@@ -21,6 +22,7 @@ mod system;
 mod target;
 
 pub use bounded::{bounded, extended};
+pub use distinct::{Difference, Distinction};
 pub use edges::{Attribute, Edge, Edges};
 pub use expr::{
     Comparison, Expr, Leaf, PathLeaf, Rational, State, StepLeaf, TransLeaf, TupleSet, Type, Value,

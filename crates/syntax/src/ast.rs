@@ -160,6 +160,8 @@ pub enum Type {
     Int,
     /// `real`
     Real,
+    /// `action`: one of the system's actions
+    Action,
 }
 
 /// `on ACTIONS when GUARD { UPDATES }`, perhaps behind `also`

@@ -47,6 +47,7 @@ fn describe(item: &SystemItem) -> String {
                 Type::Bool => "bool".to_owned(),
                 Type::Int => "int".to_owned(),
                 Type::Real => "real".to_owned(),
+                Type::Action => "action".to_owned(),
                 Type::Range(lo, hi) => format!("{}..{}", show(lo), show(hi)),
                 Type::Enum(values) => format!("{{{}}}", names(values)),
             };
@@ -80,6 +81,7 @@ fn describe_map_item(item: &MapItem) -> String {
     match item {
         MapItem::Scenario { file, row } => format!("{} {}", file.text, show(row)),
         MapItem::Unknown(rule) => rule.name.clone(),
+        MapItem::Clearance { name, most } => format!("{} {}", name.name, show(most)),
         MapItem::Inflate { by, metres } => format!("{}{}", show(by), metres.map_or("", |_| " metres")),
         MapItem::Scale(by) => show(by),
         MapItem::Crop(part) => {

@@ -164,6 +164,8 @@ mod tests {
             "legend",
             "corner",
             "inflate",
+            "clearance",
+            ": action",
             "scale T",
             "crop 0..",
             "crash",

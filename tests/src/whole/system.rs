@@ -157,7 +157,9 @@ impl System {
         let action = &self.actions[0];
         let by = if numbered { "length div 3" } else { "1" };
         "  state fuel: 0..3;\n".to_owned()
-            + &match random.below(4) {
+            + &match random.below(5) {
+                4 => "  state last: action;\n  also on * { last' = action; }\n  cost again = if action == last then 0 else 1;\n"
+                    .to_owned(),
                 0 => format!("  also on * {{ fuel' = fuel - {by}; }}\n"),
                 1 => format!(
                     "  also on * when !{goal} {{ fuel' = fuel - (if action == {action} then 2 else 1); }}\n  \
@@ -364,6 +366,9 @@ fn changed(random: &mut Random, width: usize, height: usize) -> (String, usize, 
         let first = random.below(height);
         items += &format!("  crop 0..{}, {first}..{};\n", width - 1, height - 1);
         height -= first;
+    }
+    if random.once_in(6) {
+        items += "  clearance gap T + 1;\n";
     }
     (items, width, height)
 }

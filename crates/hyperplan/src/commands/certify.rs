@@ -10,7 +10,7 @@ use crate::load::{self, Consts, Loaded};
 use crate::output::Output;
 use crate::proof::{DESCRIPTION, REFUTATION, status};
 use crate::report::json;
-use crate::wish::Wish;
+use crate::wish::Sums;
 use hyperplan_certify::{
     Bound, Certificate, Checked, Claim, Error, dimacs, pseudo_boolean, refutation, with_bounds,
 };
@@ -148,7 +148,8 @@ fn bounded(
     consts: Consts,
 ) -> Result<(Problem, Objective), Error> {
     let texts: Vec<&str> = costs.iter().map(|bound| bound.cost.as_str()).collect();
-    let targets = Wish::of_costs(&texts.join(", "), consts).and_then(|wish| wish.targets(loaded, objective));
+    let targets =
+        Sums::read("--minimize", &texts.join(", "), consts).and_then(|sums| sums.of(loaded, objective));
     let Some(targets) = targets.ok().filter(|targets| targets.len() == costs.len()) else {
         return Err(Error::Unreadable("its costs are no sums of costs of the objective".to_owned()));
     };

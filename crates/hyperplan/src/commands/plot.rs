@@ -8,6 +8,7 @@ use crate::guard;
 use crate::load::{Given, Loaded};
 use crate::output::Output;
 use crate::pictures::{Picture, Subject};
+use hyperplan_problem::{Objective, Strategy};
 use hyperplan_render::TextStyle;
 
 pub(crate) fn run(args: &args::Plot, out: &mut Output) -> Result {
@@ -24,11 +25,7 @@ pub(crate) fn run(args: &args::Plot, out: &mut Output) -> Result {
         Some(given) => given.strategies(&loaded, wanted)?,
         None => Vec::new(),
     };
-    if strategies.len() > 1 {
-        return Err(Failure::input(
-            "the strategy file answers several objectives; choose one with --objective NAME",
-        ));
-    }
+    let strategies = chosen(strategies, args.number)?;
     let objective = match (strategies.first(), wanted) {
         (Some((objective, _)), _) => Some(*objective),
         (None, Some(name)) => loaded.selected(Some(name), false)?.first().copied(),
@@ -51,4 +48,28 @@ pub(crate) fn run(args: &args::Plot, out: &mut Output) -> Result {
         out.write(|w| w.write_all(text.as_bytes()))?;
     }
     Ok(Exit::Good)
+}
+
+/// The strategy that is meant, if there are some.
+fn chosen(
+    mut strategies: Vec<(&Objective, Strategy)>,
+    number: Option<u16>,
+) -> Result<Vec<(&Objective, Strategy)>> {
+    let mut names: Vec<&str> = strategies.iter().map(|(objective, _)| objective.name.as_str()).collect();
+    names.dedup();
+    if names.len() > 1 {
+        return Err(Failure::input(
+            "the strategy file answers several objectives; choose one with --objective NAME",
+        ));
+    }
+    match (number.map(usize::from), strategies.len()) {
+        (Some(number), several) if number > several => {
+            Err(Failure::input(format_args!("there is no strategy {number}: the file has {several}")))
+        }
+        (Some(number), _) => Ok(vec![strategies.swap_remove(number - 1)]),
+        (None, 0 | 1) => Ok(strategies),
+        (None, several) => Err(Failure::input(format_args!(
+            "the file has {several} strategies; choose one with --number N, from 1"
+        ))),
+    }
 }

@@ -1,7 +1,7 @@
 //! How given paths fail: which part of the objective does, and when.
 
 use super::asker::{Asker, needed};
-use super::part::{first_paths, of_parts, parts, pinned};
+use super::part::{first_paths, of_parts, pinned};
 use crate::fact::Error;
 use crate::lint::demand::paths as read_paths;
 use crate::prepare::is_existential;
@@ -87,7 +87,7 @@ pub(super) fn failing(
     objective: &Objective,
     paths: &[Trace],
 ) -> Result<Vec<Failing>, Error> {
-    let all = parts(&objective.formula);
+    let all = objective.formula.parts();
     if paths.len() == objective.paths.len() {
         let settled = |part| settled(asker.problem, objective, part, paths);
         let failed = |part: FormulaId| {

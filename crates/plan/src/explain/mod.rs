@@ -18,7 +18,6 @@ pub use failure::{Difference, Failing, Failure, Judged};
 pub use longer::{Later, Longer, Time, longer};
 pub use opponent::{Choice, Opponents};
 pub(crate) use part::as_long;
-pub use part::parts;
 pub use wall::Wall;
 
 use crate::config::{Config, Outcome, Verdict};
@@ -190,7 +189,7 @@ impl<'a> Explainer<'a> {
         Explainer {
             asker: Asker::new(problem, config),
             objective,
-            parts: part::parts(&objective.formula),
+            parts: objective.formula.parts(),
             found: Explanation::default(),
         }
     }

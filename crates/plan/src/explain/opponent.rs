@@ -7,7 +7,7 @@
 
 use super::asker::{Asker, needed};
 use super::failure::compares_actions;
-use super::part::{at, is_at, now, parts};
+use super::part::{at, is_at, now};
 use crate::config::Verdict;
 use crate::fact::Error;
 use crate::lint::demand::paths as read_paths;
@@ -182,5 +182,5 @@ fn without(asker: &Asker<'_>, objective: &Objective, left_out: &[Choice]) -> Obj
 fn others(objective: &Objective) -> (Vec<FormulaId>, Vec<FormulaId>) {
     let (formula, leading) = (&objective.formula, objective.leading_block());
     let own = |part: &FormulaId| read_paths(formula, *part).iter().all(|path| leading.contains(path));
-    parts(formula).into_iter().partition(own)
+    formula.parts().into_iter().partition(own)
 }

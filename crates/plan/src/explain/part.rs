@@ -1,4 +1,4 @@
-//! The parts of an objective, its conjuncts, and the objectives that are made of some of them.
+//! The objectives that are made of some parts of another, and what holds of given paths.
 
 use crate::lint::rewrite::{Builder, Replaced};
 use hyperplan_problem::{
@@ -6,25 +6,6 @@ use hyperplan_problem::{
     State, Trace, Value, VarId, extended,
 };
 use hyperplan_syntax::Span;
-use std::collections::BTreeSet;
-
-/// The conjuncts of an objective's formula as they are written: what one operator means is not taken apart.
-#[must_use]
-pub fn parts(formula: &Formula) -> Vec<FormulaId> {
-    let mut found = Vec::new();
-    let mut stack = vec![formula.root()];
-    while let Some(id) = stack.pop() {
-        match &formula.nodes[id] {
-            Node::And(ids) if formula.written(id).is_none() && !ids.is_empty() => {
-                stack.extend(ids.iter().rev());
-            }
-            _ => found.push(id),
-        }
-    }
-    let mut seen = BTreeSet::new();
-    found.retain(|part| seen.insert(*part));
-    found
-}
 
 /// The objective with some parts only.
 pub(super) fn of_parts(objective: &Objective, parts: &[FormulaId]) -> Objective {

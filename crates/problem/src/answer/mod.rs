@@ -8,6 +8,7 @@ mod witness;
 
 pub use witness::{StateFault, WitnessError, to_strategy, to_witness, write_state};
 
+use crate::distinct::Difference;
 use crate::names::names;
 #[cfg(test)]
 use schemars::JsonSchema;
@@ -60,12 +61,55 @@ pub struct Answer {
     /// What was to be as small as possible, under the strategy found, what counts most first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub costs: Vec<CostValue>,
+    /// Strategies or counterexamples besides the witness, where several were asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub several: Option<Several>,
     /// Files with certificates of what is impossible, where these were asked for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub certificates: Vec<String>,
     /// The case that the verdict is about, where it is not about the whole objective.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub case: Option<Case>,
+}
+
+/// What was found where several strategies, or counterexamples, were asked for, the witness of the answer being the first.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
+pub struct Several {
+    /// In what they differ, each from each, until their paths are at rest.
+    pub differ: Difference,
+    /// How many were asked for, the first included.
+    pub wanted: u32,
+    /// Whether there are others than those found.
+    pub more: More,
+    /// Those found after the first.
+    pub others: Vec<Other>,
+}
+
+/// Whether there are strategies that differ from all those found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum More {
+    /// There are none.
+    None,
+    /// As many as wanted were found, and no other was looked for.
+    Unasked,
+    /// The search for another did not end.
+    Unknown,
+}
+
+/// A strategy besides the first.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
+pub struct Other {
+    /// The paths of the leading block.
+    pub witness: Vec<WitnessPath>,
+    /// How they were checked.
+    pub verified: Option<Verified>,
+    /// As in the answer; what is preferred is the least of strategies that differ from those before.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub costs: Vec<CostValue>,
 }
 
 /// One of several cases that together are all of an objective.
@@ -348,13 +392,46 @@ pub struct StrategyFile {
     pub witness: Option<Vec<WitnessPath>>,
 }
 
+/// A strategy as it is saved, perhaps with others for the same objective.
+#[derive(Deserialize)]
+struct Saved {
+    objective: Option<String>,
+    verdict: Option<Verdict>,
+    #[serde(default)]
+    witness: Option<Vec<WitnessPath>>,
+    #[serde(default)]
+    several: Option<SavedOthers>,
+}
+
+#[derive(Deserialize)]
+struct SavedOthers {
+    #[serde(default)]
+    others: Vec<SavedOther>,
+}
+
+#[derive(Deserialize)]
+struct SavedOther {
+    witness: Vec<WitnessPath>,
+}
+
 impl StrategyFile {
     /// Reads one JSON object, or several, one after another.
     ///
     /// # Errors
     /// If the text is not such a sequence; the message has line and column.
     pub fn read_all(text: &str) -> Result<Vec<StrategyFile>, serde_json::Error> {
-        serde_json::Deserializer::from_str(text).into_iter().collect()
+        let mut all = Vec::new();
+        for saved in serde_json::Deserializer::from_str(text).into_iter() {
+            let Saved { objective, verdict, witness, several } = saved?;
+            let others = several.into_iter().flat_map(|several| several.others);
+            let witnesses = [witness].into_iter().chain(others.map(|other| Some(other.witness)));
+            all.extend(witnesses.map(|witness| StrategyFile {
+                objective: objective.clone(),
+                verdict,
+                witness,
+            }));
+        }
+        Ok(all)
     }
 }
 

@@ -1,8 +1,8 @@
 //! What is done to a map once it is read: scenarios put on it, unknown cells settled, obstacles grown, cells merged, a part
-//! cut out. In this order, whatever the order of the items.
+//! cut out, distances measured. In this order, whatever the order of the items.
 
 use super::env::Env;
-use super::grid::{Cell, Lettered, MAX_CELLS, Occupancy, Raster};
+use super::grid::{Cell, Clearance, Lettered, MAX_CELLS, Occupancy, Raster};
 use super::scenarios::{self, Scenario};
 use crate::expr::{Rational, Value};
 use hyperplan_syntax::ast::{self, Expr, Ident, MapItem, SystemItem};
@@ -35,7 +35,11 @@ pub(super) struct Changes {
     scale: Option<(i64, Span)>,
     /// The first and the last column, the first and the last row.
     crop: Option<([i64; 4], Span)>,
+    clearance: Option<(Ident, u32)>,
 }
+
+/// Distances that are counted.
+const MAX_CLEARANCE: u32 = 100;
 
 impl Changes {
     /// The items of a system; `None` after a message.
@@ -75,6 +79,16 @@ impl Changes {
                 let ends = ends.map(|end| env.consts.evaluate(end, env.diagnostics));
                 let [Some(x0), Some(x1), Some(y0), Some(y1)] = ends else { return None };
                 self.crop = Some(([x0, x1, y0, y1], span));
+            }
+            MapItem::Clearance { name, most } => {
+                let number = env.consts.evaluate(most, env.diagnostics)?;
+                let Some(number) = u32::try_from(number).ok().filter(|n| (1..=MAX_CLEARANCE).contains(n))
+                else {
+                    let message =
+                        format!("distances are counted up to 1 to {MAX_CLEARANCE} cells, not {number}");
+                    return env.diagnostics.refuse(Diagnostic::error("bad-map", most.span, message));
+                };
+                self.clearance = Some((name.clone(), number));
             }
         }
         Some(())
@@ -121,6 +135,9 @@ impl Changes {
             let help = "cut it by `crop X0..X1, Y0..Y1;`, or make its cells larger by `scale N;`";
             return env.diagnostics.refuse(Diagnostic::error("bad-map", whole, message).with_help(help));
         }
+        let clearance = self.clearance.as_ref();
+        map.clearance =
+            clearance.map(|(name, most)| Clearance { name: name.clone(), cells: map.by_clearance(*most) });
         Some(map)
     }
 

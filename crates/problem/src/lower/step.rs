@@ -4,12 +4,12 @@
 use super::base::Actions;
 use super::clauses::known_action;
 use super::diagnostics::{Diagnostics, suggest};
-use super::expr::Context;
+use super::expr::{Context, typed};
 use super::limits::Limits;
 use super::state::StateContext;
-use super::typed::{self as make, Bounds, Typed};
+use super::typed::{self as make, Bounds, EnumType, Typed};
 use crate::edges::Attribute;
-use crate::expr::{Expr, StepLeaf};
+use crate::expr::{Comparison, Expr, StepLeaf, Value};
 use crate::ids::AttributeId;
 use crate::system::System;
 use hyperplan_syntax::ast::{self, CompareOp, ExprKind, Set};
@@ -37,8 +37,45 @@ impl StepContext<'_, '_> {
         Some(Typed::Int(Expr::Leaf(StepLeaf::Attribute(id)), Some(Bounds { lo, hi })))
     }
 
+    /// The action that the step takes, as a value of variables of type `action`.
+    fn action(&self) -> Typed<StepLeaf> {
+        let names: EnumType = self.system.actions.iter().map(|&id| self.actions.names[id].clone()).collect();
+        let mut values = self
+            .system
+            .actions
+            .iter()
+            .zip(0..)
+            .map(|(&action, at)| (Expr::Leaf(StepLeaf::Took(action)), Expr::Const(Value::Enum(at))));
+        // Whichever is not one of the others is the first; every system has an action.
+        let (_, first) = values.next().unwrap_or((Expr::TRUE, Expr::Const(Value::Enum(0))));
+        Typed::Enum(Expr::choice(values, first), names)
+    }
+
+    /// That the step takes the action that a variable or label has.
+    fn takes_value(&mut self, e: &ast::Expr) -> Option<Expr<StepLeaf>> {
+        let value = typed(self, e, None)?;
+        let Typed::Enum(value, names) = value else {
+            let message = format!("an action is compared with {}", value.describe());
+            let diagnostic = Diagnostic::error("type-mismatch", e.span, message);
+            return self
+                .error(diagnostic.with_help("compare it with an action, or a variable of type `action`"));
+        };
+        let takes = |(name, at): (&String, u32)| {
+            let action = self.actions.get(name).filter(|action| self.system.actions.contains(action))?;
+            let has = make::compare(Comparison::Eq, value.clone(), Expr::Const(Value::Enum(at)));
+            Some(make::and([Expr::Leaf(StepLeaf::Took(action)), has]))
+        };
+        Some(make::or(names.iter().zip(0..).filter_map(takes)))
+    }
+
     /// That the step takes an action.
     fn takes(&mut self, action: &ast::Expr) -> Option<Expr<StepLeaf>> {
+        if let ExprKind::Name(name) = &action.kind
+            && self.state.names.contains_key(name)
+            && !self.actions.get(name).is_some_and(|id| self.system.actions.contains(&id))
+        {
+            return self.takes_value(action);
+        }
         let (ExprKind::Name(name) | ExprKind::Text(name)) = &action.kind else {
             let message = "cannot compare `action` with this";
             let diagnostic = Diagnostic::error("type-mismatch", action.span, message);
@@ -62,6 +99,9 @@ impl Context for StepContext<'_, '_> {
     }
 
     fn resolve(&mut self, name: &str) -> Option<Option<Typed<StepLeaf>>> {
+        if name == "action" {
+            return Some(Some(self.action()));
+        }
         if let Some(attribute) = self.attribute(name) {
             return Some(Some(attribute));
         }
@@ -74,11 +114,6 @@ impl Context for StepContext<'_, '_> {
     }
 
     fn unknown(&mut self, name: &str, span: Span) -> Diagnostic {
-        if name == "action" {
-            let message = "`action` is no value";
-            let help = "compare it: `action == up` or `action in {up, down}`";
-            return Diagnostic::error("misplaced-special", span, message).with_help(help);
-        }
         let diagnostic = self.state.unknown(name, span);
         let attributes = self.system.edges.iter().flat_map(|edges| edges.attributes());
         let names: Vec<&str> = attributes.map(|attribute| attribute.name.as_str()).collect();

@@ -38,8 +38,8 @@ pub(crate) fn lower_system(ast: &ast::System, env: &mut Env) -> (System, bool) {
         values: RefCell::default(),
     };
     declare_base(&mut cx, &base.labels);
-    variables(&mut cx, ast);
     let actions = actions(&mut cx, ast, base.actions, env.actions);
+    variables(&mut cx, ast, &|| actions.iter().map(|&action| env.actions.names[action].clone()).collect());
     let labels = lower_labels(&mut cx, ast, base.labels);
     demand_new_names(&mut cx, base.edges.as_ref());
     let mut system = System {
@@ -125,13 +125,13 @@ fn demand_new_names(cx: &mut StateContext, edges: Option<&Edges>) {
     }
 }
 
-/// Reads the `state` items.
-fn variables(cx: &mut StateContext, ast: &ast::System) {
+/// Reads the `state` items, of a system with these actions.
+fn variables(cx: &mut StateContext, ast: &ast::System, actions: &dyn Fn() -> EnumType) {
     for item in &ast.items {
         let SystemItem::State(declarations) = item else { continue };
         for declaration in declarations {
             let id = VarId::from(cx.vars.len());
-            match lower_type(cx, declaration) {
+            match lower_type(cx, declaration, actions) {
                 Some(ty) if declare(cx, &declaration.name, Leaf::Var(id)) => {
                     let (name, span) = (declaration.name.name.clone(), declaration.name.span);
                     cx.vars.push(Var { name, ty, sums: None, span });
@@ -142,7 +142,11 @@ fn variables(cx: &mut StateContext, ast: &ast::System) {
     }
 }
 
-fn lower_type(cx: &mut StateContext, declaration: &ast::StateDecl) -> Option<Type> {
+fn lower_type(
+    cx: &mut StateContext,
+    declaration: &ast::StateDecl,
+    actions: &dyn Fn() -> EnumType,
+) -> Option<Type> {
     let span = declaration.ty_span;
     match &declaration.ty {
         ast::Type::Bool => Some(Type::Bool),
@@ -171,6 +175,7 @@ fn lower_type(cx: &mut StateContext, declaration: &ast::StateDecl) -> Option<Typ
         }
         ast::Type::Int => Some(Type::Int),
         ast::Type::Real => Some(Type::Real),
+        ast::Type::Action => Some(Type::Enum(actions())),
     }
 }
 

@@ -26,6 +26,13 @@ pub enum MapItem {
     Scale(Expr),
     /// `crop X0..X1, Y0..Y1;`, both ends included
     Crop(Box<Area>),
+    /// `clearance NAME N;`
+    Clearance {
+        /// The label that it declares.
+        name: Ident,
+        /// The greatest value that it has.
+        most: Expr,
+    },
 }
 
 /// A part of a map.
@@ -43,6 +50,7 @@ impl MapItem {
     pub fn exprs(&self) -> Vec<&Expr> {
         match self {
             MapItem::Scenario { row: e, .. } | MapItem::Inflate { by: e, .. } | MapItem::Scale(e) => vec![e],
+            MapItem::Clearance { most, .. } => vec![most],
             MapItem::Unknown(_) => Vec::new(),
             MapItem::Crop(part) => vec![&part.x.0, &part.x.1, &part.y.0, &part.y.1],
         }
@@ -57,6 +65,7 @@ impl MapItem {
             MapItem::Inflate { .. } => "inflate",
             MapItem::Scale(_) => "scale",
             MapItem::Crop(_) => "crop",
+            MapItem::Clearance { .. } => "clearance",
         }
     }
 }

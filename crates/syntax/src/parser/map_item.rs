@@ -23,6 +23,14 @@ impl Parser<'_> {
                 let expected = if metres.is_some() { "`;`" } else { "an operator, `m` or `;`" };
                 (MapItem::Inflate { by, metres }, expected)
             }
+            "clearance" => {
+                let name = self.name("the name of a label")?;
+                if self.peek() == Tok::Semi {
+                    let help = "say up to how many cells are counted: `clearance gap 4;`";
+                    return self.fail_with("a number", Some(help.to_owned()));
+                }
+                (MapItem::Clearance { name, most: self.arithmetic()? }, "an operator or `;`")
+            }
             "scale" => (MapItem::Scale(self.arithmetic()?), "an operator or `;`"),
             _ => {
                 let x = self.columns_or_rows()?;

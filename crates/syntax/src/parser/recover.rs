@@ -11,8 +11,27 @@ pub(super) const TOP: &[&str] = &["const", "system", "template", "define", "obje
 
 /// Words that begin an item of a system.
 pub(super) const ITEMS: &[&str] = &[
-    "state", "action", "on", "also", "init", "label", "cost", "observe", "absorb", "trans", "moves",
-    "obstacle", "edge", "corner", "legend", "scenario", "unknown", "inflate", "scale", "crop",
+    "state",
+    "action",
+    "on",
+    "also",
+    "init",
+    "label",
+    "cost",
+    "observe",
+    "absorb",
+    "trans",
+    "moves",
+    "obstacle",
+    "edge",
+    "corner",
+    "legend",
+    "scenario",
+    "unknown",
+    "inflate",
+    "scale",
+    "crop",
+    "clearance",
 ];
 
 /// What a block holds, and so where its next member begins.

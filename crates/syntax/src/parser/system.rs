@@ -143,7 +143,7 @@ impl Parser<'_> {
                 self.equals()?;
                 SystemItem::Cost(name, self.expr()?)
             }
-            "scenario" | "unknown" | "inflate" | "scale" | "crop" => {
+            "scenario" | "unknown" | "inflate" | "scale" | "crop" | "clearance" => {
                 let (item, expected) = self.map_item(word)?;
                 let span = self.since(start.span);
                 self.semicolon(Block::System, &format!("`{word}`"), expected)?;
@@ -199,6 +199,7 @@ impl Parser<'_> {
             "bool" => Some(Type::Bool),
             "int" => Some(Type::Int),
             "real" => Some(Type::Real),
+            "action" => Some(Type::Action),
             _ => None,
         };
         let begins_range = matches!(self.peek_at(1), Tok::DotDot | Tok::LBracket | Tok::LParen)
@@ -215,10 +216,11 @@ impl Parser<'_> {
                 "boolean" => Some("did you mean `bool`?".to_owned()),
                 "integer" | "nat" => Some("did you mean `int`?".to_owned()),
                 "float" | "double" => Some("did you mean `real`?".to_owned()),
-                _ => did_you_mean(token.text, &["bool", "int", "real"]),
+                _ => did_you_mean(token.text, &["bool", "int", "real", "action"]),
             };
-            let help =
-                meant.unwrap_or_else(|| "types are `bool`, `LO..HI`, `{a, b}`, `int` and `real`".to_owned());
+            let help = meant.unwrap_or_else(|| {
+                "types are `bool`, `LO..HI`, `{a, b}`, `int`, `real` and `action`".to_owned()
+            });
             let error =
                 Diagnostic::error("unknown-type", token.span, format!("unknown type `{}`", token.text));
             self.report(error.with_help(help));

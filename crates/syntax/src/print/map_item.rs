@@ -24,6 +24,11 @@ impl Printer<'_> {
                 self.layout.text(" m");
                 metres.end as usize
             }
+            MapItem::Clearance { name, most } => {
+                self.layout.text(format!("{} ", name.name));
+                self.arithmetic(most);
+                end(most)
+            }
             MapItem::Scale(by) => {
                 self.arithmetic(by);
                 end(by)

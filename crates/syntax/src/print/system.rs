@@ -136,6 +136,7 @@ impl Printer<'_> {
                 Type::Bool => printer.layout.text("bool"),
                 Type::Int => printer.layout.text("int"),
                 Type::Real => printer.layout.text("real"),
+                Type::Action => printer.layout.text("action"),
                 Type::Range(lo, hi) => printer.range(lo, hi),
                 Type::Enum(values) => {
                     printer.layout.text("{");

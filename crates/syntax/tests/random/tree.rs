@@ -153,7 +153,8 @@ fn system_item(random: &mut Random) -> SystemItem {
 }
 
 fn map_item(random: &mut Random) -> MapItem {
-    match random.below(5) {
+    match random.below(6) {
+        5 => MapItem::Clearance { name: ident(random), most: expr(random, 2) },
         0 => MapItem::Scenario { file: text(random), row: expr(random, 2) },
         1 => MapItem::Unknown(ident(random)),
         // Before a word, some names are read as operators.
@@ -171,7 +172,8 @@ fn map_item(random: &mut Random) -> MapItem {
 }
 
 fn state(random: &mut Random) -> StateDecl {
-    let ty = match random.below(6) {
+    let ty = match random.below(7) {
+        6 => Type::Action,
         0 => Type::Bool,
         1 => Type::Int,
         2 => Type::Real,

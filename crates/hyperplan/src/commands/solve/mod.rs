@@ -1,5 +1,7 @@
 //! `hyperplan solve`: from a problem file to a verified strategy.
 
+mod found;
+mod further;
 mod lanes;
 
 use crate::args::{self, Part, SolveFormat};
@@ -8,29 +10,26 @@ use crate::config;
 use crate::explain::{Explain, Why};
 use crate::failure::{Exit, Failure, Result};
 use crate::files::write_bytes;
-use crate::foreign::Foreign;
 use crate::guard;
 use crate::load::Loaded;
-use crate::nusmv;
 use crate::output::Output;
 use crate::parameter::{Parameter, Searched};
-use crate::pictures::{Picture, Subject};
+use crate::pictures::Picture;
 use crate::plans;
 use crate::proof::{Prover, Said};
-use crate::report::{json, paths_text};
+use crate::report::json;
 use crate::waiting::Waiting;
-use crate::wish::Wish;
-use hyperplan_outlet::one_line;
+use crate::wish::{Smallest, Wish};
+use found::Found;
 use hyperplan_plan::{self as plan, MinimizeError, Watch};
 use hyperplan_problem::answer::plans::PlanFormat;
 use hyperplan_problem::answer::{
-    Answer, Below, Case, CostValue, Failed, Ordered, ReasonCode, Seconds, Size, Solver, Verdict, Verified,
-    WitnessPath, to_witness,
+    Answer, Below, Case, CostValue, Failed, More, Ordered, ReasonCode, Seconds, Size, Solver, Verdict,
+    to_witness,
 };
-use hyperplan_problem::{Objective, Problem, Quantifier, Strategy, Target, display};
-use hyperplan_render::{Scene, can_draw};
+use hyperplan_problem::{Objective, Problem, Target, display};
+use hyperplan_render::can_draw;
 use lanes::Team;
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Output) -> Result {
@@ -40,33 +39,74 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
     let explain = Explain { queries: config.plan.queries.as_deref() };
     let objectives = loaded.selected(args.selection.objective.as_deref(), false)?;
     let pictures = pictures(&config, &loaded, &objectives, out)?;
-    let several = objectives.len() > 1;
     check_formats(args, &config, &loaded, &objectives)?;
-    let mut worst = Exit::Good;
-    let mut found_so_far = String::new();
-    let (mut saved, mut drawn) = (Ok(()), Ok(()));
-    for (index, objective) in objectives.into_iter().enumerate() {
+    let several = objectives.len() > 1;
+    let asked = Asked { args, config: &config, wish: &wish, explain, several, verbose, quiet };
+    let mut told = Told { worst: Exit::Good, lines: String::new(), saved: Ok(()), drawn: Ok(()) };
+    for (index, (objective, picture)) in objectives.into_iter().zip(&pictures).enumerate() {
         if out.is_closed() {
             break;
         }
         let start = Instant::now();
-        let solved = watched(&loaded, objective, &wish, args, (&config.plan, explain, verbose), out);
-        let (outcome, searched, open) = match solved {
-            Ok(found) => found,
+        match watched(&loaded, objective, &wish, args, (&config.plan, explain, verbose), out) {
+            Ok(solved) => {
+                guard::doing("telling what was found");
+                let total = loaded.time + start.elapsed();
+                asked.tell((&loaded, objective, index), (solved, total), picture.as_ref(), &mut told, out)?;
+            }
             Err((failure, reason_code)) => {
                 // The other objectives may do better.
                 out.failure(&failure);
-                worst = worst.max(failure.status);
+                told.worst = told.worst.max(failure.status);
                 if args.failures {
                     let objective = objective.name.clone();
                     out.line(json(&Failed { objective, reason: failure.to_string(), reason_code })?)?;
                 }
-                continue;
             }
-        };
-        guard::doing("telling what was found");
-        let total = loaded.time + start.elapsed();
-        let loaded = searched.as_ref().map_or(&loaded, |searched| &searched.loaded);
+        }
+    }
+    let Told { mut worst, saved, drawn, .. } = told;
+    for failure in [saved, drawn].into_iter().filter_map(Result::err) {
+        out.failure(&failure);
+        worst = worst.max(failure.status);
+    }
+    Ok(worst)
+}
+
+/// What was asked for.
+struct Asked<'a> {
+    args: &'a args::Solve,
+    config: &'a config::Solve,
+    wish: &'a Wish<'a>,
+    explain: Explain<'a>,
+    /// Whether there are several objectives.
+    several: bool,
+    verbose: bool,
+    quiet: bool,
+}
+
+/// What was told so far.
+struct Told {
+    worst: Exit,
+    /// The answers, for a file.
+    lines: String,
+    saved: Result<()>,
+    drawn: Result<()>,
+}
+
+impl Asked<'_> {
+    /// Certifies, saves, prints and draws what was found of an objective, and tells its status.
+    fn tell(
+        &self,
+        (loaded, objective, index): (&Loaded, &Objective, usize),
+        (solved, total): (Solved, Duration),
+        picture: Option<&Picture>,
+        told: &mut Told,
+        out: &mut Output,
+    ) -> Result<()> {
+        let Asked { args, config, explain, .. } = *self;
+        let Solved { outcome, searched, open, several } = solved;
+        let loaded = searched.as_ref().map_or(loaded, |searched| &searched.loaded);
         let objective = loaded.problem.objective(&objective.name).unwrap_or(objective);
         let searched = searched.as_ref();
         let own = outcome.reason.as_ref().filter(|_| searched.is_none());
@@ -74,43 +114,43 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
         let why = own.as_ref().or_else(|| searched?.undecided.as_ref());
         let mut answer = answer(loaded, objective, &outcome, (searched, open.costs), why, total);
         answer.case = args.cube.map(|part| case(part, objective));
+        let (several, others) = further::told((loaded, objective), args, &answer, several);
+        answer.several = several;
         let about = (loaded, objective);
-        let certified = certify(args, &config, (&mut answer, &outcome), &wish, about, out);
-        worst = worst.max(certified);
+        let certified = certify(args, config, (&mut answer, &outcome), self.wish, about, out);
+        told.worst = told.worst.max(certified);
         if certified >= Exit::Solver {
             // What is wrong is not told as an answer.
-            continue;
+            return Ok(());
         }
         let foreign = args.problem.foreign.as_ref();
-        let short = args.format == SolveFormat::Text && !quiet;
+        let short = args.format == SolveFormat::Text && !self.quiet;
         let reason = if short { in_short(about, &outcome, &config.plan) } else { None };
-        let found =
-            Found { loaded, objective, outcome: &outcome, answer: &answer, searched, reason, foreign };
+        let (outcome, answer, others) = (&outcome, &answer, others.as_slice());
+        let found = Found { loaded, objective, outcome, others, answer, searched, reason, foreign };
         if let Some(path) = &config.save {
             // Before anything else that may fail.
-            saved = match PlanFormat::of_file(path) {
+            let saved = std::mem::replace(&mut told.saved, Ok(()));
+            told.saved = match PlanFormat::of_file(path) {
                 None => {
-                    found_so_far += &(json(&answer)? + "\n");
-                    write_bytes(path, found_so_far.as_bytes())
+                    told.lines += &(json(answer)? + "\n");
+                    write_bytes(path, told.lines.as_bytes())
                 }
-                Some(format) => saved.and(found.save(format, path, several)),
+                Some(format) => saved.and(found.save(format, path, self.several)),
             };
         }
-        if index > 0 && args.format == SolveFormat::Text && !quiet {
+        if index > 0 && short {
             out.line("")?;
         }
-        found.print(args.format, (verbose, quiet), out)?;
+        found.print(args.format, (self.verbose, self.quiet), out)?;
         outcome.notes.iter().for_each(|note| out.remark(format_args!("note: {}", explain.note(note))));
-        if let (Some(picture), Some(strategy)) = (&pictures[index], &outcome.witness) {
-            drawn = drawn.and(found.draw(strategy, picture));
+        if let Some(picture) = picture {
+            let drawn = found.draw(picture);
+            told.drawn = std::mem::replace(&mut told.drawn, Ok(())).and(drawn);
         }
-        worst = worst.max(status(&answer));
+        told.worst = told.worst.max(status(answer));
+        Ok(())
     }
-    for failure in [saved, drawn].into_iter().filter_map(Result::err) {
-        out.failure(&failure);
-        worst = worst.max(failure.status);
-    }
-    Ok(worst)
 }
 
 /// What an answer says of the case that it is about.
@@ -128,7 +168,7 @@ fn watched(
     (config, explain, verbose): (&plan::Config, Explain<'_>, bool),
     out: &Output,
 ) -> Result<Solved, (Failure, ReasonCode)> {
-    if matches!(wish, Wish::Constant(_)) && !objective.minimize.is_empty() {
+    if matches!(wish.smallest, Smallest::Constant(_)) && !objective.minimize.is_empty() {
         let name = &objective.name;
         out.remark(format_args!("note: {name}: its own `minimize` is left aside for `--minimize`"));
     }
@@ -136,7 +176,11 @@ fn watched(
     let own = plan::Config { watch: Watch::default(), ..config.clone() };
     guard::watching(&own.watch);
     let _waiting = Waiting::begin(&own.watch, verbose, out);
-    solve(loaded, objective, wish, &Team { args, config: &own, out }, explain)
+    let team = Team { args, config: &own, out };
+    let mut solved = solve(loaded, objective, wish, &team, explain)?;
+    further::prefer((loaded, objective), wish, &team, explain, &mut solved)?;
+    further::others((loaded, objective), wish, &team, explain, &mut solved)?;
+    Ok(solved)
 }
 
 /// Certifies what is said to be impossible, if that is wanted. An answer without a certificate is an answer all the same,
@@ -154,6 +198,9 @@ fn certify(
     let prover = Prover { folder, set: &args.problem.set, deadline: &config.plan.deadline };
     let Answer { minimized, costs, .. } = &*answer;
     let said = Said { verdict: outcome.verdict, minimized: minimized.as_ref(), costs };
+    if answer.several.as_ref().is_some_and(|several| several.more == More::None) {
+        out.remark(format_args!("note: {}: that there are no others is not certified", answer.objective));
+    }
     match prover.prove(about, &said, wish, out) {
         Ok((made, status)) => {
             answer.certificates = made;
@@ -177,6 +224,11 @@ fn check_formats(
     if objectives.len() > 1 && (printed.is_some() || args.format == SolveFormat::Nusmv) {
         let message = "--format csv, ros, geojson, pddl and nusmv print the strategy of one objective; choose it by --objective NAME, or \
                        --save FILE with such an ending for a file each";
+        return Err(Failure::input(message));
+    }
+    if args.all.is_some() && (printed.is_some() || args.format == SolveFormat::Nusmv) {
+        let message = "--format csv, ros, geojson, pddl and nusmv print one strategy, and --all finds several; --save FILE with such \
+                       an ending makes a file of each, and --format json prints all";
         return Err(Failure::input(message));
     }
     let saved = config.save.as_deref().and_then(PlanFormat::of_file);
@@ -212,7 +264,7 @@ fn pictures(
     for objective in objectives {
         pictures.push(match can_draw(&loaded.problem, objective) {
             Ok(()) if objectives.len() == 1 => Some(picture.clone()),
-            Ok(()) => Some(picture.for_objective(&objective.name)),
+            Ok(()) => Some(picture.with_name(&objective.name)),
             Err(error) if objectives.len() == 1 => return Err(Failure::input(error)),
             Err(error) => {
                 out.remark(format_args!("note: {} will have no picture: {error}", objective.name));
@@ -234,7 +286,20 @@ struct Costs {
     undecided: Option<plan::Reason>,
 }
 
-type Solved = (plan::Outcome, Option<Searched>, Costs);
+/// What was found of an objective.
+struct Solved {
+    outcome: plan::Outcome,
+    searched: Option<Searched>,
+    open: Costs,
+    /// What was found besides, where several answers are wanted.
+    several: Option<plan::Several>,
+}
+
+impl Solved {
+    fn new(outcome: plan::Outcome) -> Self {
+        Solved { outcome, searched: None, open: Costs::default(), several: None }
+    }
+}
 
 /// The outcome for an objective, or for the least value of a constant, or of the cheapest strategy.
 fn solve(
@@ -257,13 +322,13 @@ fn solve(
     let failed = |error: &plan::Error, value: String| {
         (explain.failure(format_args!("{name}{value}"), error), error.code())
     };
-    if let Wish::Constant(parameter) = wish {
+    if let Smallest::Constant(parameter) = &wish.smallest {
         return match parameter.least(loaded, objective, config, explain) {
             Ok((outcome, searched)) => {
                 let problem = &searched.loaded.problem;
                 let objective = problem.objective(name).unwrap_or(objective);
                 let outcome = straight(problem, objective, outcome, team);
-                Ok((outcome, Some(searched), Costs::default()))
+                Ok(Solved { searched: Some(searched), ..Solved::new(outcome) })
             }
             Err(error) => Err(unsolved(name, parameter, error, explain)),
         };
@@ -272,19 +337,28 @@ fn solve(
     if targets.is_empty() {
         let outcome = plan::solve(&loaded.problem, objective, config);
         return outcome
-            .map(|outcome| (straight(&loaded.problem, objective, outcome, team), None, Costs::default()))
+            .map(|outcome| Solved::new(straight(&loaded.problem, objective, outcome, team)))
             .map_err(|error| failed(&error, String::new()));
     }
     let found = plan::cheapest(&loaded.problem, objective, &targets, config);
     let plan::Cheapest { outcome, values, undecided } =
         found.map_err(|error| failed(&error, String::new()))?;
+    let costs = cost_values((&loaded.problem, objective), &targets, &values);
+    Ok(Solved { open: Costs { costs, undecided }, ..Solved::new(outcome) })
+}
+
+/// What targets come to.
+fn cost_values(
+    (problem, objective): (&Problem, &Objective),
+    targets: &[Target],
+    values: &[plan::Value],
+) -> Vec<CostValue> {
     let value = |(target, value): (&Target, &plan::Value)| CostValue {
-        expression: display::target(&loaded.problem, objective, target),
+        expression: display::target(problem, objective, target),
         value: value.found,
         least: value.least,
     };
-    let costs = targets.iter().zip(&values).map(value).collect();
-    Ok((outcome, None, Costs { costs, undecided }))
+    targets.iter().zip(values).map(value).collect()
 }
 
 /// Why the least value of a constant is not known.
@@ -344,6 +418,8 @@ fn status(answer: &Answer) -> Exit {
         // A value that need not be the least is not what was asked for.
         _ if answer.minimized.as_ref().is_some_and(|m| m.below == Below::Unknown) => Exit::Undecided,
         _ if answer.costs.iter().any(|cost| cost.least < cost.value) => Exit::Undecided,
+        // Neither are fewer strategies than there may be.
+        _ if answer.several.as_ref().is_some_and(|several| several.more == More::Unknown) => Exit::Undecided,
         Verdict::Realizable => Exit::Good,
         Verdict::Unrealizable => Exit::Unrealizable,
         Verdict::Unknown => Exit::Undecided,
@@ -387,6 +463,7 @@ fn answer(
         },
         minimized: searched.map(|searched| searched.minimized.clone()),
         costs,
+        several: None,
         certificates: Vec::new(),
         case: None,
     }
@@ -395,190 +472,4 @@ fn answer(
 /// To microseconds: what a clock can tell.
 fn rounded(seconds: f64) -> f64 {
     (seconds * 1e6).round() / 1e6
-}
-
-/// An outcome and all it takes to print it.
-struct Found<'a> {
-    loaded: &'a Loaded,
-    objective: &'a Objective,
-    outcome: &'a plan::Outcome,
-    answer: &'a Answer,
-    searched: Option<&'a Searched>,
-    /// Why there is no strategy, or how the counterexample makes the objective fail, on one line.
-    reason: Option<String>,
-    /// The files of another tool, if it was these.
-    foreign: Option<&'a Foreign>,
-}
-
-impl<'a> Found<'a> {
-    fn scene(&self) -> Scene<'a> {
-        let traces = self.outcome.witness.as_ref().map_or(&[][..], |s| &s.traces);
-        Scene { problem: &self.loaded.problem, objective: Some(self.objective), traces, note: "" }
-    }
-
-    fn draw(&self, strategy: &Strategy, picture: &Picture) -> Result<()> {
-        let subject = Subject {
-            problem: &self.loaded.problem,
-            objective: Some(self.objective),
-            strategy: Some(strategy),
-            named: &[],
-        };
-        subject.draw(picture)
-    }
-
-    /// The paths as others want them: nothing of what comes after they were absorbed.
-    fn plan(&self) -> Option<Vec<WitnessPath>> {
-        let strategy = self.outcome.witness.as_ref()?;
-        let cut = plans::without_rest(&self.loaded.problem, self.objective, strategy);
-        Some(to_witness(&self.loaded.problem, self.objective, &cut))
-    }
-
-    /// Prints the answer, or the strategy alone; what became of the objective is a remark then.
-    fn print(&self, format: SolveFormat, (verbose, quiet): (bool, bool), out: &mut Output) -> Result<()> {
-        match (plan_format(format), format) {
-            (Some(format), _) => {
-                out.remark(self.verdict_line());
-                let Some(paths) = self.plan() else { return Ok(()) };
-                out.verbatim(&self.written(format, &paths)?)
-            }
-            (None, SolveFormat::Nusmv) => {
-                out.remark(self.verdict_line());
-                let Some(paths) = &self.answer.witness else { return Ok(()) };
-                let refutes = self.answer.verdict == Verdict::Unrealizable;
-                let name = &self.objective.name;
-                out.verbatim(&nusmv::traces(name, refutes, paths, &nusmv::originals(self.foreign)))
-            }
-            (None, SolveFormat::Json) => out.line(json(self.answer)?),
-            (None, _) if quiet => out.line(self.verdict_line()),
-            (None, _) => {
-                let text = self.text(verbose, out.color);
-                out.line(text.trim_end())
-            }
-        }
-    }
-
-    fn written(&self, format: PlanFormat, paths: &[WitnessPath]) -> Result<String> {
-        format.write(&self.objective.name, paths).map_err(|error| plans::cannot(&error))
-    }
-
-    /// Saves the strategy alone, a file for each path.
-    fn save(&self, format: PlanFormat, path: &Path, several: bool) -> Result<()> {
-        let Some(paths) = self.plan() else { return Ok(()) };
-        let named = if several { plans::with_name(path, &self.objective.name) } else { path.to_owned() };
-        for (file, own) in plans::files(&named, &paths).into_iter().zip(&paths) {
-            let text = self.written(format, std::slice::from_ref(own))?;
-            write_bytes(&file, text.as_bytes())?;
-        }
-        Ok(())
-    }
-
-    fn verdict_line(&self) -> String {
-        if let Some(searched) = self.searched {
-            return format!("{}: {}", self.objective.name, one_line(&searched.words));
-        }
-        // Users of verifiers have words of their own.
-        let verdict = match (self.answer.verdict, self.foreign) {
-            (Verdict::Realizable, None) => "realizable",
-            (Verdict::Realizable, Some(_)) => "realizable (holds)",
-            (Verdict::Unrealizable, None) => "unrealizable",
-            (Verdict::Unrealizable, Some(_)) => "unrealizable (violated)",
-            (Verdict::Unknown, _) => "unknown",
-        };
-        let case =
-            self.answer.case.map(|Case { index, of, .. }| format!("{verdict} in case {index} of {of}"));
-        let verdict = case.as_deref().unwrap_or(verdict);
-        if !self.answer.costs.is_empty() {
-            return format!("{}: {verdict} with {}", self.objective.name, self.costs());
-        }
-        match &self.answer.reason {
-            Some(reason) => format!("{}: {verdict}: {}", self.objective.name, one_line(reason)),
-            None => format!("{}: {verdict}", self.objective.name),
-        }
-    }
-
-    /// What the strategy costs, and whether that is the least.
-    fn costs(&self) -> String {
-        let value = |cost: &CostValue| {
-            let CostValue { expression, value, least } = cost;
-            let least = match least < value {
-                true => format!("; whether less is possible, down to {least}, is unknown"),
-                false => ", the least".to_owned(),
-            };
-            format!("{expression} = {value}{least}")
-        };
-        let all: Vec<String> = self.answer.costs.iter().map(value).collect();
-        let why = self.answer.reason.iter().map(|reason| format!(": {}", one_line(reason)));
-        all.join("; ") + &why.collect::<String>()
-    }
-
-    fn text(&self, verbose: bool, color: bool) -> String {
-        let mut text = self.verdict_line();
-        text.push_str(&format!("\nhorizon: {}\n", self.horizons()));
-        if self.outcome.witness.is_some() {
-            text.push_str(&self.strategy(color));
-        }
-        text.extend(self.reason.iter().map(|why| format!("{}\n", one_line(why))));
-        text.push_str(&self.checked());
-        match self.answer.certificates.as_slice() {
-            [] => {}
-            [one] => text.push_str(&format!("certificate: {}\n", one_line(one))),
-            [first, .., last] => {
-                text.push_str(&format!("certificates: {} to {}\n", one_line(first), one_line(last)))
-            }
-        }
-        text.push_str(&self.effort(verbose));
-        text
-    }
-
-    fn horizons(&self) -> String {
-        let each = self.answer.horizon.0.iter().map(|(name, steps)| match steps {
-            Some(steps) => format!("{name} {steps}"),
-            None => format!("{name} not read"),
-        });
-        each.collect::<Vec<_>>().join(", ")
-    }
-
-    fn strategy(&self, color: bool) -> String {
-        let mut text = String::new();
-        if self.objective.paths.first().map(|p| p.quantifier) == Some(Quantifier::Forall) {
-            text.push_str("counterexample:\n");
-        }
-        text += &paths_text(self.scene(), color);
-        text + "\n"
-    }
-
-    fn checked(&self) -> String {
-        let words = match (self.answer.verified, &self.answer.witness) {
-            (Some(Verified::BySearch), _) => "verified by search\n",
-            (Some(Verified::BySolver), _) => "verified by a solver (too large to search)\n",
-            (None, Some(_)) => "not verified\n",
-            (None, None) => "",
-        };
-        words.to_owned()
-    }
-
-    fn effort(&self, verbose: bool) -> String {
-        let Answer { solver, quantifiers, states, iterations, size, seconds, .. } = self.answer;
-        let rounds = if *iterations == 1 { "round" } else { "rounds" };
-        let name = one_line(&format!("{} {}", solver.name, solver.version)).into_owned();
-        let mut text = format!(
-            "{}, quantifiers {quantifiers}, states {states}, {iterations} {rounds}, {:.3} s\n",
-            name.trim_end(),
-            seconds.total
-        );
-        if verbose {
-            if let Some(because) = self.outcome.because {
-                text.push_str(&format!("quantifiers {quantifiers}: {because}\n"));
-            }
-            let Seconds { read, encode, solve, verify, .. } = seconds;
-            let Size { variables, clauses, bytes } = size;
-            let text_size = bytes.map_or_else(String::new, |bytes| format!(", {bytes} bytes"));
-            let logic = self.answer.logic.as_ref().map_or_else(String::new, |logic| format!(", {logic}"));
-            text.push_str(&format!(
-                "read {read:.3} s, encode {encode:.3} s, solve {solve:.3} s, verify {verify:.3} s\n\
-                 largest query: {variables} variables, {clauses} clauses{text_size}{logic}\n"
-            ));
-        }
-        text
-    }
 }

@@ -15,6 +15,7 @@ pub(crate) use rows::{Format, Legend, Meaning, Row, from_rows, labelled};
 pub(crate) use system::{Rules, base};
 
 use crate::place::Place;
+use hyperplan_syntax::ast::Ident;
 
 /// Most cells that a map may have in a problem.
 pub(crate) const MAX_CELLS: usize = 4_000_000;
@@ -38,6 +39,16 @@ pub(crate) struct GridMap {
     pub(crate) unknown: Vec<Cell>,
     /// Where it lies, if that was said.
     pub(crate) place: Option<Place>,
+    /// What says how far obstacles are, if that was wanted.
+    pub(crate) clearance: Option<Clearance>,
+}
+
+/// A label that says how far the nearest obstacle is.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Clearance {
+    pub(crate) name: Ident,
+    /// The cells of each distance, from 0; all others are that far or farther.
+    pub(crate) cells: Vec<Vec<Cell>>,
 }
 
 /// A label of some cells.

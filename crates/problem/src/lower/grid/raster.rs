@@ -1,6 +1,6 @@
 //! A map while it is read and changed: what each cell is, and the labels of cells.
 
-use super::{Cell, GridMap, Lettered};
+use super::{Cell, Clearance, GridMap, Lettered};
 use crate::place::Place;
 use std::collections::BTreeSet;
 
@@ -26,13 +26,15 @@ pub(crate) struct Raster {
     pub(crate) unknown: Vec<Cell>,
     /// Where it lies, if that was said.
     pub(crate) place: Option<Place>,
+    /// What says how far obstacles are, if that was wanted.
+    pub(crate) clearance: Option<Clearance>,
 }
 
 impl Raster {
     /// A map of free cells.
     pub(crate) fn new(width: u32, height: u32) -> Raster {
         let cells = vec![Occupancy::Free; width as usize * height as usize];
-        Raster { width, height, cells, labels: Vec::new(), unknown: Vec::new(), place: None }
+        Raster { width, height, cells, labels: Vec::new(), unknown: Vec::new(), place: None, clearance: None }
     }
 
     pub(crate) fn index(&self, (x, y): Cell) -> usize {
@@ -155,12 +157,35 @@ impl Raster {
         self.labels = labels;
     }
 
+    /// How far each cell is from the nearest obstacle, centre to centre, in cells and rounded up, if that is less than `most`: the
+    /// cells of each such distance. Those of distance `n` are the ones that [`Raster::inflate`] by n covers, and by n - 1 does not.
+    pub(crate) fn by_clearance(&self, most: u32) -> Vec<Vec<Cell>> {
+        let far = most as usize;
+        let above = self.vertical_distances(far);
+        let mut by_distance = vec![Vec::new(); far];
+        for (at, (y, x)) in (0..self.height).flat_map(|y| (0..self.width).map(move |x| (y, x))).enumerate() {
+            let (left, right) = (far.min(x as usize), far.min((self.width - 1 - x) as usize));
+            let squares = (at - left..=at + right).map(|other| {
+                let (dx, dy) = (at.abs_diff(other) as u64, u64::from(above[other]));
+                dx * dx + dy * dy
+            });
+            let square = squares.min().unwrap_or(u64::MAX);
+            let distance = square.isqrt() + u64::from(square.isqrt().pow(2) < square);
+            // Where a column has none within reach, `far` stands for that.
+            if let Some(cells) = usize::try_from(distance).ok().and_then(|d| by_distance.get_mut(d)) {
+                cells.push((x, y));
+            }
+        }
+        by_distance
+    }
+
     /// The map that a system is made of. Unknown cells have to be settled.
     pub(crate) fn finish(self) -> GridMap {
         let (width, height) = (self.width, self.height);
         let columns = (0..width).flat_map(|x| (0..height).map(move |y| (x, y)));
         let obstacles = columns.filter(|cell| self.cells[self.index(*cell)] != Occupancy::Free).collect();
-        GridMap { width, height, obstacles, labels: self.labels, unknown: self.unknown, place: self.place }
+        let Raster { labels, unknown, place, clearance, .. } = self;
+        GridMap { width, height, obstacles, labels, unknown, place, clearance }
     }
 }
 

@@ -1,6 +1,6 @@
 //! A map's moves and rules as ordinary variables, clauses and labels.
 
-use super::{Cell, GridMap, Lettered, Move, Rule};
+use super::{Cell, Clearance, GridMap, Lettered, Move, Rule};
 use crate::expr::{Comparison, Expr, Leaf, TupleSet, Type, Value};
 use crate::ids::VarId;
 use crate::lower::{Actions, Base};
@@ -95,6 +95,20 @@ fn leaves(map: &GridMap, step: Move) -> Option<Expr<Leaf>> {
     }
 }
 
+/// The label that says how far the nearest obstacle is.
+fn distance(clearance: &Clearance) -> Label {
+    let Clearance { name, cells } = clearance;
+    let number = |n: usize| i64::try_from(n).unwrap_or(i64::MAX);
+    let there = cells.iter().enumerate().filter(|(_, cells)| !cells.is_empty());
+    let near = there.map(|(distance, cells)| {
+        let there = Expr::Member(vec![var(X), var(Y)], set(cells));
+        (there, Expr::Const(Value::Int(number(distance))))
+    });
+    let hi = number(cells.len());
+    let expr = Expr::choice(near, Expr::Const(Value::Int(hi)));
+    Label { name: name.name.clone(), expr, ty: Type::Range { lo: 0, hi }, nested: false, span: name.span }
+}
+
 /// A system's parts from a map. The action names are interned; everything lies at `span`.
 pub(crate) fn base(map: &GridMap, rules: &Rules, actions: &mut Actions, span: Span) -> Base {
     let ground = Ground::of(map);
@@ -122,6 +136,7 @@ pub(crate) fn base(map: &GridMap, rules: &Rules, actions: &mut Actions, span: Sp
         };
         Label { name: name.clone(), expr, ty: Type::Bool, nested: false, span }
     });
+    let labels = labels.chain(map.clearance.iter().map(distance));
     Base {
         vars: variables(map, can_crash, span),
         actions: ids,

@@ -64,6 +64,27 @@ fn obstacles_grow_by_the_distance_of_centres() {
     }
 }
 
+/// A cell is as far from obstacles as they have to grow to cover it.
+#[test]
+fn distances_are_those_by_which_obstacles_grow() {
+    for map in all(4, 3).chain(all(5, 2)).chain(all(1, 6)).chain(all(6, 1)) {
+        for most in [1, 2, 3, 7, 100] {
+            let by_distance = map.by_clearance(most);
+            assert_eq!(by_distance.len(), most as usize);
+            let (mut known, mut before) = (0, 0);
+            for (distance, cells) in (0_u64..).zip(&by_distance) {
+                let mut grown = map.clone();
+                grown.inflate(distance * distance);
+                assert!(cells.iter().all(|&(x, y)| is_obstacle(&grown, x, y)), "{distance} of {map:?}");
+                let covered = grown.cells.len() - grown.free();
+                known += cells.len();
+                assert_eq!((known, cells.len()), (covered, covered - before), "{distance} of {map:?}");
+                before = covered;
+            }
+        }
+    }
+}
+
 #[test]
 fn a_larger_cell_is_free_if_all_its_parts_are() {
     for before in all(4, 3).chain(all(5, 2)) {
@@ -126,6 +147,10 @@ fn what_a_change_loses_is_said() {
         ("inflate -1;", "bad-map: obstacles do not grow by -1"),
         ("inflate 1 m;", "bad-map: this map does not say how large its cells are"),
         ("inflate K;", "unknown-name: no constant `K`"),
+        ("clearance gap 0;", "bad-map: distances are counted up to 1 to 100 cells, not 0"),
+        ("clearance gap 101;", "bad-map: distances are counted up to 1 to 100 cells, not 101"),
+        ("clearance goal 2;", "duplicate-name: the label `goal` exists already"),
+        ("clearance a 2; clearance b 2;", "repeated-item: `clearance` was said already"),
         ("unknown free;", "misplaced-item: only maps of ROS have cells that are unknown"),
         ("scale 1; scale 2;", "repeated-item: `scale` was said already"),
         ("scenario \"none.scen\" 1;", "cannot-read: cannot read `none.scen`: no such file"),

@@ -15,7 +15,7 @@ use crate::failure::{Exit, Failure, Result};
 use crate::load::Loaded;
 use crate::output::Output;
 use crate::parameter::Parameter;
-use crate::wish::Wish;
+use crate::wish::{Smallest, Wish};
 use answers::{cheapest, ended, is_whole, outcome};
 use board::{Board, Kind, Lane, Range};
 use hyperplan_compare::{Finish, Foreman, Lanes};
@@ -104,8 +104,8 @@ impl Team<'_> {
                 (Kind::Ways, self.ways(number).map_err(unsupported)?, number)
             }
         };
-        let constant = match wish {
-            Wish::Constant(parameter) => Some(&**parameter),
+        let constant = match &wish.smallest {
+            Smallest::Constant(parameter) => Some(&**parameter),
             _ => None,
         };
         let board = Board::new(kind, ways.len(), range);
@@ -136,7 +136,9 @@ impl Team<'_> {
 
     /// The values that are to be asked.
     fn range(&self, objective: &Objective, wish: &Wish<'_>, explain: Explain<'_>) -> Result<Range, Stop> {
-        let Wish::Constant(parameter) = wish else { return Ok(Range { low: 0, high: 0, lasts: false }) };
+        let Smallest::Constant(parameter) = &wish.smallest else {
+            return Ok(Range { low: 0, high: 0, lasts: false });
+        };
         let mut problem = |value| parameter.problem(value);
         let name = &objective.name;
         match narrowed(name, parameter.range.clone(), &mut problem, self.config) {
@@ -215,10 +217,10 @@ impl Crew<'_> {
         {
             let outcome = outcome(problem, objective, best)?;
             let undecided = (!settled).then(|| self.reasons(0));
-            return Ok((outcome, None, Costs { costs, undecided }));
+            return Ok(Solved { open: Costs { costs, undecided }, ..Solved::new(outcome) });
         }
         let outcome = if settled { self.winner(problem, objective, 0)? } else { self.undecided(problem, 0)? };
-        Ok((outcome, None, Costs::default()))
+        Ok(Solved::new(outcome))
     }
 
     /// The outcome of the least value of a constant.
@@ -245,7 +247,7 @@ impl Crew<'_> {
         };
         let least = Least { value, problem, outcome, proved: low.min(value), undecided };
         let (outcome, searched) = parameter.told(loaded, least, loaded.time, explain);
-        Ok((outcome, Some(searched), Costs::default()))
+        Ok(Solved { searched: Some(searched), ..Solved::new(outcome) })
     }
 
     /// The answers of the lanes of a value.

@@ -77,6 +77,9 @@ impl Team<'_> {
         if let Some(args::Wish::Costs(costs)) = &args.minimize {
             option("minimize", costs.clone());
         }
+        // With a constant, what is preferred counts among those for its least value.
+        let constant = matches!(args.minimize, Some(args::Wish::Constant(_)));
+        args.prefer.iter().filter(|_| !constant).for_each(|costs| option("prefer", costs.clone()));
         args.cross_check.iter().for_each(|solver| option("cross-check", solver.clone()));
         args.memory.iter().for_each(|mib| option("memory", mib.to_string()));
         if let Some(left) = self.config.deadline.remaining() {
@@ -95,9 +98,7 @@ impl Team<'_> {
                 option(name, value);
             }
         }
-        words.extend(
-            matches!(args.minimize, Some(args::Wish::Constant(_))).then(|| "--own-minimize-aside".to_owned()),
-        );
+        words.extend(constant.then(|| "--own-minimize-aside".to_owned()));
         words.extend(args.no_verify.then(|| "--no-verify".to_owned()));
         words.extend(own.iter().cloned());
         // So that no name is taken for an option.
