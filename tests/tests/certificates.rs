@@ -328,6 +328,29 @@ fn no_instances_refute_what_is_wrong() {
     assert!(2 * instances > wrong, "hardly any instance");
 }
 
+/// An instance may begin in one of several states, of which some are hopeless: what holds in those says nothing of the others.
+#[test]
+fn where_an_instance_is_not_says_nothing() {
+    let text = "system M { state x: 0..2; action go, stay; on go when x == 0 { x' = 1; } on go when x > 0 {} on stay {}
+        init x != 1; }
+        // o: realizable
+        objective o within 2 {
+          exists p, r. forall q. x[p] == x[q] & G action[q] == action[r] -> F x[q] == 1
+        }";
+    let typed = lowered(text);
+    let objective = &typed.objectives[0];
+    assert_eq!(solve(&typed, objective, &Config::new(Spec::Builtin)).expect("small").verdict, Verdict::Realizable);
+    let (p, r, q) = (PathId::from(0), PathId::from(1), PathId::from(2));
+    let go = typed.systems[objective.paths[q].system].actions[0];
+    for action in [Action::Like(r), Action::Is(go)] {
+        let instance = Instance { path: q, start: Start::Along(p, 0), steps: vec![Step { action, outcome: 0 }; 2] };
+        let branches = [Branch { after: 0, instances: vec![instance] }];
+        let mut encoder = Encoder::new(&typed, objective, &never).expect("it is finite");
+        encoder.tree(&branches).expect("it is an instance");
+        assert!(has_model(&encoder.take()), "a wrong claim is refuted by {branches:?}");
+    }
+}
+
 /// The last times at which paths are read.
 fn horizons(problem: &Problem, objective: &Objective) -> Vec<usize> {
     let outcome = solve(problem, objective, &Config::new(Spec::Builtin)).expect("it is small");
