@@ -339,11 +339,15 @@ fn where_an_instance_is_not_says_nothing() {
         }";
     let typed = lowered(text);
     let objective = &typed.objectives[0];
-    assert_eq!(solve(&typed, objective, &Config::new(Spec::Builtin)).expect("small").verdict, Verdict::Realizable);
+    assert_eq!(
+        solve(&typed, objective, &Config::new(Spec::Builtin)).expect("small").verdict,
+        Verdict::Realizable
+    );
     let (p, r, q) = (PathId::from(0), PathId::from(1), PathId::from(2));
     let go = typed.systems[objective.paths[q].system].actions[0];
     for action in [Action::Like(r), Action::Is(go)] {
-        let instance = Instance { path: q, start: Start::Along(p, 0), steps: vec![Step { action, outcome: 0 }; 2] };
+        let instance =
+            Instance { path: q, start: Start::Along(p, 0), steps: vec![Step { action, outcome: 0 }; 2] };
         let branches = [Branch { after: 0, instances: vec![instance] }];
         let mut encoder = Encoder::new(&typed, objective, &never).expect("it is finite");
         encoder.tree(&branches).expect("it is an instance");

@@ -8,7 +8,8 @@ use crate::lrat::Checker;
 use flate2::Compression;
 use flate2::read::MultiGzDecoder;
 use flate2::write::GzEncoder;
-use hyperplan_problem::{Objective, Problem, Quantifier};
+use hyperplan_problem::answer::{WitnessPath, to_strategy};
+use hyperplan_problem::{Difference, Distinction, FormulaId, Node, Objective, Problem, Quantifier, Strategy};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fmt::{self, Write as _};
@@ -59,6 +60,12 @@ pub struct Certificate {
     /// Of which strategies only: those with such costs, by [`crate::with_bounds`].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub costs: Vec<Bound>,
+    /// Of which strategies only: those that differ from these.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub apart: Option<Apart>,
+    /// What of the objective alone excludes that.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub parts: Option<Parts>,
     /// The benchmark whose status it certifies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub benchmark: Option<Benchmark>,
@@ -69,6 +76,72 @@ pub struct Certificate {
     /// How many clauses there are.
     pub clauses: u64,
     instances: Vec<BranchFile>,
+}
+
+/// Strategies, or counterexamples, that are known, so that the claim is about others.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Apart {
+    /// In what others would differ.
+    pub differ: Difference,
+    /// Those that are known.
+    pub from: Vec<Vec<WitnessPath>>,
+}
+
+impl Apart {
+    /// The objective with the demand that a strategy differs from those.
+    ///
+    /// # Errors
+    /// If they are none of the objective.
+    pub fn objective(&self, problem: &Problem, objective: &Objective) -> Result<Objective, Error> {
+        let known = |paths: &Vec<WitnessPath>| to_strategy(problem, objective, paths);
+        let known: Vec<Strategy> = self
+            .from
+            .iter()
+            .map(known)
+            .collect::<Result<_, _>>()
+            .map_err(|error| Error::Unreadable(error.to_string()))?;
+        let leading = objective.leading_block();
+        let whole = |strategy: &Strategy| {
+            strategy.traces.iter().map(|trace| trace.path).eq(leading.iter().copied())
+                && strategy.traces.iter().all(|trace| trace.states.len() == trace.actions.len() + 1)
+        };
+        if !known.iter().all(whole) {
+            return Err(Error::Unreadable(
+                "a strategy that is known has not all its paths and states".to_owned(),
+            ));
+        }
+        Ok(Distinction::new(problem, objective, self.differ).apart(objective, &known))
+    }
+}
+
+/// Parts of an objective: conjuncts of its formula.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Parts {
+    /// Which, by their numbers from 1 on, in the order in which they are written.
+    pub numbers: Vec<usize>,
+    /// Whether they exclude each other even if the other player helps, so that every path is one of the leading player.
+    pub helped: bool,
+}
+
+impl Parts {
+    /// The objective that asks for these parts alone.
+    ///
+    /// # Errors
+    /// If it has no such parts.
+    pub fn objective(&self, objective: &Objective) -> Result<Objective, Error> {
+        let all = objective.formula.parts();
+        let part = |number: &usize| all.get(number.checked_sub(1)?).copied();
+        let parts: Option<Vec<FormulaId>> = self.numbers.iter().map(part).collect();
+        let parts = parts.ok_or_else(|| Error::Unreadable("the objective has no such parts".to_owned()))?;
+        let mut own = objective.clone();
+        own.formula.push(Node::And(parts), objective.span);
+        if self.helped {
+            own.paths.iter_mut().for_each(|path| path.quantifier = Quantifier::Exists);
+        }
+        Ok(own)
+    }
 }
 
 /// A benchmark that was written of a problem.
@@ -115,6 +188,8 @@ impl Certificate {
             objective: objective.name.clone(),
             claim: Claim::of(objective),
             costs: Vec::new(),
+            apart: None,
+            parts: None,
             benchmark: None,
             problem: digest(problem, objective),
             variables: encoder.variables(),

@@ -16,7 +16,9 @@ mod other;
 mod reading;
 mod system;
 
-pub use certificate::{Benchmark, Certificate, Checked, Claim, check, compress, dimacs, refutation};
+pub use certificate::{
+    Apart, Benchmark, Certificate, Checked, Claim, Parts, check, compress, dimacs, refutation,
+};
 pub use cost::{Bound, with_bounds};
 pub use encode::{Encoder, Place};
 pub use error::Error;

@@ -5,7 +5,7 @@ use crate::files;
 use crate::load::Loaded;
 use crate::output::Output;
 use crate::wish::{Smallest, Wish};
-use hyperplan_certify::{Benchmark, Bound, Certificate, Claim, Error, compress, with_bounds};
+use hyperplan_certify::{Apart, Benchmark, Bound, Certificate, Claim, Error, Parts, compress, with_bounds};
 use hyperplan_compare::plan::sha256;
 use hyperplan_plan::{Proved, Unproved, Verdict, prove};
 use hyperplan_problem::answer::{Below, CostValue, Minimized};
@@ -29,6 +29,8 @@ pub(crate) struct Said<'a> {
     pub(crate) verdict: Verdict,
     pub(crate) minimized: Option<&'a Minimized>,
     pub(crate) costs: &'a [CostValue],
+    /// The strategies, or counterexamples, where there are no others.
+    pub(crate) all: Option<Apart>,
 }
 
 /// A claim: that an objective of a problem has no strategy, or no counterexample.
@@ -39,12 +41,20 @@ struct Subject<'a> {
     value: Option<(&'a str, i64)>,
     /// Costs that its strategies would have.
     costs: Vec<Bound>,
+    /// What they would differ from.
+    apart: Option<&'a Apart>,
+    /// What of the objective is asked for, if it is not all.
+    parts: Option<&'a Parts>,
 }
 
 impl Subject<'_> {
     /// The name of its files.
     fn name(&self) -> String {
-        let name = &self.objective.name;
+        let name = &match (self.apart, self.parts) {
+            (Some(_), _) => format!("{}-others", self.objective.name),
+            (None, Some(_)) => format!("{}-parts", self.objective.name),
+            (None, None) => self.objective.name.clone(),
+        };
         match (self.value, self.costs.len()) {
             (Some((constant, value)), 0) => format!("{name}-{constant}={value}"),
             (Some((constant, value)), number) => format!("{name}-{constant}={value}-cost-{number}"),
@@ -86,7 +96,14 @@ impl Prover<'_> {
                     let value = Some((parameter.constant, value));
                     // Larger values would fare no better.
                     if !self.one(
-                        &Subject { problem: &problem, objective, value, costs: Vec::new() },
+                        &Subject {
+                            problem: &problem,
+                            objective,
+                            value,
+                            costs: Vec::new(),
+                            apart: None,
+                            parts: None,
+                        },
                         &mut made,
                         out,
                     )? {
@@ -100,7 +117,8 @@ impl Prover<'_> {
                 }
             }
             _ if claims => {
-                let subject = Subject { problem: &loaded.problem, objective, value: None, costs: Vec::new() };
+                let (problem, costs) = (&loaded.problem, Vec::new());
+                let subject = Subject { problem, objective, value: None, costs, apart: None, parts: None };
                 self.one(&subject, &mut made, out)?;
             }
             _ => self.costs(
@@ -110,7 +128,76 @@ impl Prover<'_> {
                 out,
             )?,
         }
+        if let Some(all) = &said.all {
+            let value = match (&wish.smallest, said.minimized) {
+                (Smallest::Constant(parameter), Some(minimized)) => {
+                    minimized.value.map(|value| (parameter.constant, value))
+                }
+                _ => None,
+            };
+            let kept = wish.kept(loaded, objective)?;
+            self.others((loaded, objective, value), (all, &kept, said.costs), &mut made, out)?;
+        }
         Ok(made)
+    }
+
+    /// Certifies that parts of an objective exclude each other.
+    pub(crate) fn parts(
+        &self,
+        (problem, objective): (&Problem, &Objective),
+        parts: &Parts,
+        made: &mut (Vec<String>, Exit),
+        out: &mut Output,
+    ) -> Result<()> {
+        let own = parts.objective(objective).map_err(|error| Failure::new(status(&error), error))?;
+        let subject = Subject {
+            problem,
+            objective: &own,
+            value: None,
+            costs: Vec::new(),
+            apart: None,
+            parts: Some(parts),
+        };
+        self.one(&subject, made, out).map(drop)
+    }
+
+    /// Certifies an objective as it is, or for a value of a constant; whether there is a certificate.
+    pub(crate) fn whole(
+        &self,
+        (problem, objective): (&Problem, &Objective),
+        value: Option<(&str, i64)>,
+        made: &mut (Vec<String>, Exit),
+        out: &mut Output,
+    ) -> Result<bool> {
+        self.one(
+            &Subject { problem, objective, value, costs: Vec::new(), apart: None, parts: None },
+            made,
+            out,
+        )
+    }
+
+    /// Certifies that there are no others, with no more of what is to be as small as possible.
+    fn others(
+        &self,
+        (loaded, objective, value): (&Loaded, &Objective, Option<(&str, i64)>),
+        (all, kept, costs): (&Apart, &[Target], &[CostValue]),
+        made: &mut (Vec<String>, Exit),
+        out: &mut Output,
+    ) -> Result<()> {
+        let failed = |error: Error| Failure::new(status(&error), error);
+        let apart = all.objective(&loaded.problem, objective).map_err(failed)?;
+        let bounds: Vec<(Target, i64)> =
+            kept.iter().cloned().zip(costs.iter().map(|cost| cost.value)).collect();
+        let named = |cost: &CostValue| Bound { cost: cost.expression.clone(), most: cost.value };
+        let costs = costs[..bounds.len()].iter().map(named).collect();
+        let bounded = (!bounds.is_empty()).then(|| with_bounds(&loaded.problem, &apart, &bounds));
+        let bounded = bounded.transpose().map_err(failed)?;
+        let (problem, objective) = match &bounded {
+            Some((problem, objective)) => (problem, objective),
+            None => (&loaded.problem, &apart),
+        };
+        self.one(&Subject { problem, objective, value, costs, apart: Some(all), parts: None }, made, out)
+            .map(drop)
     }
 
     /// Certifies that no strategy costs less: for each target that none has less of it, of those with no more of the targets before.
@@ -131,7 +218,14 @@ impl Prover<'_> {
             let named = costs.iter().zip(&bounds).map(bound).collect();
             let (problem, objective) = with_bounds(&loaded.problem, objective, &bounds)
                 .map_err(|error| Failure::new(status(&error), error))?;
-            let subject = Subject { problem: &problem, objective: &objective, value, costs: named };
+            let subject = Subject {
+                problem: &problem,
+                objective: &objective,
+                value,
+                costs: named,
+                apart: None,
+                parts: None,
+            };
             // Where a value need not be the least, nothing is said of those after it.
             if !self.one(&subject, made, out)? || cost.least < cost.value {
                 break;
@@ -147,6 +241,12 @@ impl Prover<'_> {
             let value = subject.value.map(|(constant, value)| format!("{constant} = {value}"));
             let cost = subject.costs.last().map(|Bound { cost, most }| format!("{cost} <= {most}"));
             let with: Vec<String> = value.into_iter().chain(cost).collect();
+            if subject.parts.is_some() {
+                return format!("{}: that these parts exclude each other", subject.objective.name);
+            }
+            if subject.apart.is_some() {
+                return format!("{}: that there are no others", subject.objective.name);
+            }
             match with.is_empty() {
                 true => subject.objective.name.clone(),
                 false => format!("{} with {}", subject.objective.name, with.join(", ")),
@@ -175,6 +275,8 @@ impl Prover<'_> {
         let set = self.set.iter().map(|(name, value)| format!("{name}={value}")).chain(set).collect();
         let mut made = Made::new((problem, objective), set, self.deadline)?;
         made.certificate.costs.clone_from(&subject.costs);
+        made.certificate.apart = subject.apart.cloned();
+        made.certificate.parts = subject.parts.cloned();
         made.write(&self.folder.join(subject.name())).map_err(|failure| (failure.status, failure.message))
     }
 }

@@ -169,3 +169,31 @@ fn solve_says_why_in_a_line() {
     let quiet = hyperplan(&["solve", FILE, "--objective", "late", "--quiet"]);
     assert_eq!(quiet.stdout, "late: unrealizable\n");
 }
+
+/// What is said to be impossible has certificates: that parts exclude each other too; of fewer parts it is wrong.
+#[test]
+fn what_is_explained_is_certified() {
+    for (objective, more) in [("walled", 0), ("late", 2), ("alone", 0), ("shaky", 0), ("anywhere", 0)] {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let proof = folder.path().to_str().expect("a plain name");
+        let arguments = ["explain", FILE, "--objective", objective, "--proof", proof, "--format", "json"];
+        let run = hyperplan(&arguments);
+        assert_eq!(run.status, 1, "{objective}: {}", run.stderr);
+        let explained = run.json().remove(0);
+        let names = explained["certificates"].as_array().expect("certificates");
+        let constants =
+            names.iter().filter(|name| name.as_str().is_some_and(|name| name.contains("-T="))).count();
+        // The objective as it is, its parts, and the larger values of T.
+        assert!(names.len() == constants + 2 && constants >= more, "{objective}: {names:?}");
+        let run = hyperplan(&["certify", FILE, proof]);
+        assert_eq!(run.status, 0, "{objective}: {}{}", run.stdout, run.stderr);
+        let numbers = |list: &Value| list["parts"]["numbers"].as_array().map(Vec::len);
+        let file = folder.path().join(format!("{objective}-parts.json"));
+        let mut certificate: Value =
+            serde_json::from_str(&std::fs::read_to_string(&file).expect("readable")).expect("JSON");
+        assert_eq!(numbers(&certificate), explained["core"]["parts"].as_array().map(Vec::len), "{objective}");
+        certificate["parts"]["numbers"].as_array_mut().expect("numbers").pop();
+        std::fs::write(&file, certificate.to_string()).expect("written");
+        assert_ne!(hyperplan(&["certify", FILE, proof]).status, 0, "{objective}");
+    }
+}

@@ -90,7 +90,7 @@ fn among_equals() {
     assert!(others.iter().all(|other| other["costs"][0]["value"] == *least), "{}", run.stdout);
     // Of a constant, the least value comes first.
     let run = solve(&["way", "--minimize", "T", "--prefer", "cost turns[p]", "--quiet"]);
-    let said = "way: realizable with T = 8; unrealizable with T = 0..7, with cost turns[p] = 1, the least\n";
+    let said = "way: realizable with T = 8, unrealizable with 0..7; with cost turns[p] = 1, the least\n";
     assert_eq!((run.status, run.stdout.as_str()), (0, said));
     for lanes in ["--portfolio=2", "--cubes=2"] {
         let run = solve(&["way", lanes, "--prefer", "cost turns[p]", "--all", "2", "--format", "json"]);
@@ -172,7 +172,7 @@ fn what_is_refused() {
     }
 }
 
-/// Costs, the least value and what is preferred have certificates; that there are no others has none.
+/// Costs, the least value, what is preferred, and that there are no others, have certificates.
 #[test]
 fn certificates() {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -182,6 +182,31 @@ fn certificates() {
     let run = hyperplan(&["certify", WAYS, proof]);
     assert_eq!(run.status, 0, "{}", run.stderr);
     assert!(run.stdout.contains("T=8, cost turns[p] <= 0"), "{}", run.stdout);
-    let run = solve(&["way", "--all", "40", "--proof", proof]);
-    assert!(run.stderr.contains("that there are no others is not certified"), "{}", run.stderr);
+    for (differ, options) in [
+        ("cells", &["way"][..]),
+        ("actions", &["way"]),
+        ("cells", &["wide"]),
+        ("actions", &["way", "--minimize", "T", "--prefer", "cost near[p]"]),
+    ] {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let proof = text(folder.path());
+        let run =
+            solve(&[options, &["--all", "40", "--differ", differ, "--proof", proof, "--quiet"]].concat());
+        assert_eq!(run.status, 0, "{}", run.stderr);
+        let others = std::fs::read_dir(folder.path()).expect("it is there");
+        let mut names: Vec<String> =
+            others.map(|file| file.expect("a file").file_name().to_string_lossy().into_owned()).collect();
+        names.retain(|name| name.contains("-others") && name.ends_with(".json"));
+        assert_eq!(names.len(), 1, "{options:?}");
+        let run = hyperplan(&["certify", WAYS, proof]);
+        assert_eq!(run.status, 0, "{options:?}: {}{}", run.stdout, run.stderr);
+        assert!(run.stdout.contains(&format!("known that differ in {differ}")), "{}", run.stdout);
+        // With one strategy less, the claim is wrong.
+        let file = folder.path().join(&names[0]);
+        let mut certificate: Value =
+            serde_json::from_str(&std::fs::read_to_string(&file).expect("readable")).expect("JSON");
+        certificate["apart"]["from"].as_array_mut().expect("strategies").pop();
+        std::fs::write(&file, certificate.to_string()).expect("written");
+        assert_eq!(hyperplan(&["certify", WAYS, proof]).status, 2, "{options:?}");
+    }
 }

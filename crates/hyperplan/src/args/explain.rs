@@ -2,6 +2,7 @@
 
 use super::{Limit, Output, Plan, Problem, Reading, Selection};
 use clap::Args;
+use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(crate) struct Explain {
@@ -16,6 +17,10 @@ pub(crate) struct Explain {
     /// Who is asked, as in `solve`
     #[arg(long, value_name = "SOLVER", default_value = "builtin")]
     pub(crate) solver: String,
+    /// Writes certificates into this folder, for `hyperplan certify`: that there is no strategy, that the parts shown exclude
+    /// each other, that so much more time does not help
+    #[arg(long, value_name = "DIR")]
+    pub(crate) proof: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) selection: Selection,
     #[command(flatten)]

@@ -15,7 +15,7 @@ use hyperplan_certify::{
     Bound, Certificate, Checked, Claim, Error, dimacs, pseudo_boolean, refutation, with_bounds,
 };
 use hyperplan_outlet::one_line;
-use hyperplan_problem::{Objective, Problem, Target};
+use hyperplan_problem::{Difference, Objective, Problem, Target};
 use hyperplan_solver::Deadline;
 use serde::Serialize;
 use std::io;
@@ -105,6 +105,18 @@ pub(super) fn check(
     let Some(objective) = loaded.problem.objective(&certificate.objective) else {
         return Ok(Err(Error::Foreign(format!("objective {}", certificate.objective))));
     };
+    let parts = certificate.parts.as_ref().map(|parts| parts.objective(objective));
+    let parts = match parts.transpose() {
+        Ok(parts) => parts,
+        Err(error) => return Ok(Err(error)),
+    };
+    let objective = parts.as_ref().unwrap_or(objective);
+    let apart = certificate.apart.as_ref().map(|apart| apart.objective(&loaded.problem, objective));
+    let apart = match apart.transpose() {
+        Ok(apart) => apart,
+        Err(error) => return Ok(Err(error)),
+    };
+    let objective = apart.as_ref().unwrap_or(objective);
     let bounded = match certificate.costs.as_slice() {
         [] => None,
         costs => match bounded(costs, &loaded, objective, consts) {
@@ -165,6 +177,12 @@ struct Report<'a> {
     set: &'a [String],
     /// What the strategies that there are none of would cost at most.
     costs: &'a [Bound],
+    /// In what they would differ from those that are known, and how many these are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    apart: Option<(Difference, usize)>,
+    /// The numbers of the parts that are claimed to exclude each other.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    parts: Option<&'a [usize]>,
     claim: Claim,
     /// `certified`, or `refused`.
     verdict: &'static str,
@@ -183,6 +201,8 @@ impl<'a> Report<'a> {
             objective: &certificate.objective,
             set: &certificate.set,
             costs: &certificate.costs,
+            apart: certificate.apart.as_ref().map(|apart| (apart.differ, apart.from.len())),
+            parts: certificate.parts.as_ref().map(|parts| parts.numbers.as_slice()),
             claim: certificate.claim,
             verdict: if result.is_ok() { "certified" } else { "refused" },
             reason: result.as_ref().err().map(Error::to_string),
@@ -204,7 +224,14 @@ impl<'a> Report<'a> {
             Claim::NoStrategy => "unrealizable",
             Claim::NoCounterexample => "realizable",
         };
-        let about = format!("{}{with}: {claim}", one_line(self.objective));
+        let apart = self.apart.map_or(String::new(), |(differ, known)| {
+            format!(", apart from the {known} known that differ in {differ}")
+        });
+        let parts = self.parts.map_or(String::new(), |parts| {
+            let numbers: Vec<String> = parts.iter().map(ToString::to_string).collect();
+            format!(", parts {} alone", numbers.join(", "))
+        });
+        let about = format!("{}{with}{parts}{apart}: {claim}", one_line(self.objective));
         match (&self.reason, self.instances, self.clauses, self.steps) {
             (None, Some(instances), Some(clauses), Some(steps)) => {
                 let count = |n: u64, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });

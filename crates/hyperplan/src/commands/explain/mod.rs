@@ -1,5 +1,6 @@
 //! `hyperplan explain`: why an objective has no strategy, or a counterexample, and why a given strategy fails.
 
+mod proofs;
 mod record;
 mod ways;
 mod words;
@@ -11,9 +12,11 @@ use crate::config;
 use crate::configuration::Configured;
 use crate::explain::{Explain, Why};
 use crate::failure::{Exit, Failure, Result};
+use crate::files::make_folder;
 use crate::guard;
 use crate::load::{self, Given, Loaded};
 use crate::output::Output;
+use crate::proof::Prover;
 use crate::report::json;
 use hyperplan_plan::explain::{Explanation, Judged, explain, judge};
 use hyperplan_plan::{self as plan, Config, Verdict};
@@ -30,6 +33,7 @@ pub(crate) fn run(args: &args::Explain, out: &mut Output) -> Result {
     let deadline = config::deadline(args.limit.timeout, None)?;
     let solver = config::solver(&args.solver, &Configured::new(out))?;
     let config = Config { deadline, ..Config::new(solver) };
+    args.proof.iter().try_for_each(|folder| make_folder(folder))?;
     let start = Instant::now();
     let text = load::text(&args.problem)?;
     let (loaded, consts) = Loaded::with_consts(&args.problem, &text, start, out)?;
@@ -45,14 +49,16 @@ pub(crate) fn run(args: &args::Explain, out: &mut Output) -> Result {
         }
         return Ok(worst);
     }
+    let prover = |folder| Prover { folder, set: &args.problem.set, deadline: &config.deadline };
+    let prover = args.proof.as_deref().map(prover);
     let ways = Ways { args: &args.problem, text: &text, consts: &consts };
     for (index, objective) in loaded.selected(name, false)?.into_iter().enumerate() {
         if index > 0 && args.output.format == Format::Text {
             out.line("")?;
         }
-        match why(&loaded, objective, &ways, (&config, limited)) {
-            Ok(told) => {
-                worst = worst.max(told.status());
+        match why(&loaded, objective, &ways, (&config, limited), prover.as_ref(), out) {
+            Ok((told, certified)) => {
+                worst = worst.max(told.status()).max(certified);
                 told.print(args.output.format, out)?;
             }
             Err(failure) => {
@@ -75,6 +81,8 @@ pub(crate) struct Told<'a> {
     pub(crate) loaded: &'a Loaded,
     pub(crate) objective: &'a Objective,
     pub(crate) subject: Subject,
+    /// Files with certificates, where these were asked for.
+    pub(crate) certificates: Vec<String>,
 }
 
 /// What is explained.
@@ -114,7 +122,9 @@ fn why<'a>(
     objective: &'a Objective,
     ways: &Ways<'_>,
     (config, limited): (&Config, bool),
-) -> Result<Told<'a>> {
+    prover: Option<&Prover<'_>>,
+    out: &mut Output,
+) -> Result<(Told<'a>, Exit)> {
     let explain_error = |error: &plan::Error| Explain::default().failure(&objective.name, error);
     guard::doing("searching for a strategy");
     let outcome = plan::solve(&loaded.problem, objective, config).map_err(|error| explain_error(&error))?;
@@ -126,7 +136,15 @@ fn why<'a>(
     let reason = outcome.reason.as_ref().map(|reason| Why::new(reason, Explain::default()));
     let notes = outcome.notes.iter().map(|note| Explain::default().note(note)).collect();
     let subject = Subject::Answer { verdict: outcome.verdict, reason, notes, found };
-    Ok(Told { loaded, objective, subject })
+    let mut told = Told { loaded, objective, subject, certificates: Vec::new() };
+    let status = match prover {
+        Some(prover) => {
+            guard::doing("making certificates");
+            told.certify(prover, &mut longer, out)?
+        }
+        None => Exit::Good,
+    };
+    Ok((told, status))
 }
 
 /// Checks a strategy, and says how it fails.
@@ -141,5 +159,5 @@ fn judged<'a>(
     let judged = judged.map_err(|error| Explain::default().failure(&objective.name, &error))?;
     let judged = judged.map_err(|error| Failure::input(format_args!("{}: {error}", given.name)))?;
     let role = crate::report::role(objective);
-    Ok(Told { loaded, objective, subject: Subject::Given { judged, role } })
+    Ok(Told { loaded, objective, subject: Subject::Given { judged, role }, certificates: Vec::new() })
 }

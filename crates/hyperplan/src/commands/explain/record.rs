@@ -35,6 +35,9 @@ pub(super) struct Record {
     notes: Vec<String>,
     /// Questions that were not answered.
     open: Vec<String>,
+    /// Files with certificates, where these were asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    certificates: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -145,7 +148,7 @@ struct JsonStep {
 
 impl Record {
     pub(super) fn new(told: &Told<'_>) -> Record {
-        let Told { loaded, objective, subject } = told;
+        let Told { loaded, objective, subject, certificates } = told;
         let own = Own { loaded, objective };
         let mut record = Record {
             file: loaded.file.clone(),
@@ -162,6 +165,7 @@ impl Record {
             failure: None,
             notes: Vec::new(),
             open: Vec::new(),
+            certificates: certificates.clone(),
         };
         match subject {
             Subject::Given { judged, .. } => match judged {

@@ -91,7 +91,11 @@ impl Words<'_> {
                     text += "there is nothing to explain; `hyperplan solve` shows how\n";
                 }
                 notes.iter().for_each(|note| text += &format!("note: {}\n", one_line(note)));
-                text + &self.explanation(found)
+                text += &self.explanation(found);
+                let certificates = &self.told.certificates;
+                let named: Vec<String> =
+                    certificates.iter().map(|file| format!("certificate: {}\n", one_line(file))).collect();
+                if named.is_empty() { text } else { format!("{text}\n{}", named.concat()) }
             }
             Subject::Given { judged: Judged::Holds, role } => format!("{name}: the {role} holds\n"),
             Subject::Given { judged: Judged::TooLarge, role } => {

@@ -148,7 +148,7 @@ impl<'a> Found<'a> {
             let words = format!("{}: {}", self.objective.name, one_line(&searched.words));
             return match self.answer.costs.is_empty() {
                 true => words,
-                false => format!("{words}, with {}", self.costs()),
+                false => format!("{words}; with {}", self.costs()),
             };
         }
         // Users of verifiers have words of their own.

@@ -21,6 +21,7 @@ use crate::report::json;
 use crate::waiting::Waiting;
 use crate::wish::{Smallest, Wish};
 use found::Found;
+use hyperplan_certify::Apart;
 use hyperplan_plan::{self as plan, MinimizeError, Watch};
 use hyperplan_problem::answer::plans::PlanFormat;
 use hyperplan_problem::answer::{
@@ -196,11 +197,12 @@ fn certify(
     let Some(folder) = &args.proof else { return Exit::Good };
     guard::doing("making certificates");
     let prover = Prover { folder, set: &args.problem.set, deadline: &config.plan.deadline };
-    let Answer { minimized, costs, .. } = &*answer;
-    let said = Said { verdict: outcome.verdict, minimized: minimized.as_ref(), costs };
-    if answer.several.as_ref().is_some_and(|several| several.more == More::None) {
-        out.remark(format_args!("note: {}: that there are no others is not certified", answer.objective));
-    }
+    let Answer { minimized, costs, witness, several, .. } = &*answer;
+    let all = several.as_ref().filter(|several| several.more == More::None).map(|several| Apart {
+        differ: several.differ,
+        from: witness.iter().chain(several.others.iter().map(|other| &other.witness)).cloned().collect(),
+    });
+    let said = Said { verdict: outcome.verdict, minimized: minimized.as_ref(), costs, all };
     match prover.prove(about, &said, wish, out) {
         Ok((made, status)) => {
             answer.certificates = made;
