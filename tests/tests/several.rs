@@ -195,16 +195,25 @@ fn whole(brute: &Brute<'_>, own: &Path) -> Path {
     brute.paths.iter().find(begins).expect("it goes on").clone()
 }
 
+/// The problem by brute force, if it is not too large.
+fn brute(problem: &Problem) -> Option<Brute<'_>> {
+    let brute = Brute::new(problem, MOST)?;
+    let count = brute.paths.len().checked_pow(u32::try_from(problem.exists.len()).unwrap_or(u32::MAX));
+    count.is_some_and(|count| count <= MOST).then_some(brute)
+}
+
 /// One of the ways to search, of which some take longer and come less often.
-fn way(seed: u64) -> (Quantifiers, Option<States>, Limits) {
+fn way(seed: u64) -> Config {
     let usual = Limits::default();
-    match seed % 8 {
+    let (quantifiers, states, limits) = match seed % 8 {
         0 => (Quantifiers::Cegis, Some(States::Onehot), Limits { prune: false, ..usual }),
         1 => (Quantifiers::Auto, Some(States::Bitvec), usual),
         2 => (Quantifiers::Expand, Some(States::Onehot), usual),
         3 => (Quantifiers::Auto, None, Limits { residuals: 8, layer_states: 40, pairs: 12, ..usual }),
         _ => (Quantifiers::Auto, None, usual),
-    }
+    };
+    let deadline = Deadline::after(Duration::from_secs(60));
+    Config { quantifiers, states, limits, deadline, ..Config::new(Spec::Builtin) }
 }
 
 #[test]
@@ -216,17 +225,11 @@ fn there_are_as_many_as_there_are() {
         let random = &mut Random::new(seed);
         let base = random::problem(random);
         let problem = errand(random, base);
-        let Some(brute) = Brute::new(&problem, MOST) else { continue };
-        let count = brute.paths.len().checked_pow(u32::try_from(problem.exists.len()).unwrap_or(u32::MAX));
         let exists = problem.exists[0];
-        if count.is_none_or(|count| count > MOST) || brute.verdict() != exists {
-            continue;
-        }
+        let Some(brute) = brute(&problem).filter(|brute| brute.verdict() == exists) else { continue };
         let typed = lowered(&problem.to_string());
         let objective = &typed.objectives[0];
-        let deadline = Deadline::after(Duration::from_secs(60));
-        let (quantifiers, states, limits) = way(seed);
-        let config = Config { quantifiers, states, limits, deadline, ..Config::new(Spec::Builtin) };
+        let config = way(seed);
         let found = solve(&typed, objective, &config).expect("it is supported");
         let straight = seed.is_multiple_of(2);
         let found = match straight {
@@ -247,9 +250,7 @@ fn there_are_as_many_as_there_are() {
         let wanted = Wanted { number, difference, kept: &[], preferred: &[], straight };
         let answer = several(&typed, objective, &found, &wanted, &config);
         let answer = answer.unwrap_or_else(|error| panic!("seed {seed} {difference}: {error}\n{problem}"));
-        let about = format!(
-            "seed {seed} {difference} {quantifiers} {states:?}\n{problem}\n{answer:#?}\n{expected:?}"
-        );
+        let about = format!("seed {seed} {difference}\n{problem}\n{answer:#?}\n{expected:?}");
         let Several { others, more } = answer;
         let outcomes: Vec<Outcome> =
             [found].into_iter().chain(others.into_iter().map(|other| other.outcome)).collect();
@@ -299,11 +300,8 @@ fn the_best_come_first() {
         let random = &mut Random::new(seed);
         let base = random::problem_with_costs(random, false);
         let problem = errand(random, base);
-        let Some(brute) = Brute::new(&problem, MOST) else { continue };
-        let count = brute.paths.len().checked_pow(u32::try_from(problem.exists.len()).unwrap_or(u32::MAX));
-        if count.is_none_or(|count| count > MOST) || !problem.exists[0] || !brute.verdict() {
-            continue;
-        }
+        let solved = |brute: &Brute<'_>| problem.exists[0] && brute.verdict();
+        let Some(brute) = brute(&problem).filter(solved) else { continue };
         let leading = problem.exists.iter().take_while(|exists| **exists).count();
         let typed = lowered(&problem.to_string());
         let objective = &typed.objectives[0];
@@ -314,9 +312,7 @@ fn the_best_come_first() {
         // What one path costs is to be minimized, and what another one costs is preferred.
         let minimized = usize::from(leading > 1 && random.once_in(2));
         let targets: Vec<Target> = (0..minimized).chain([minimized]).map(of).collect();
-        let deadline = Deadline::after(Duration::from_secs(60));
-        let (quantifiers, states, limits) = way(seed);
-        let config = Config { quantifiers, states, limits, deadline, ..Config::new(Spec::Builtin) };
+        let config = way(seed);
         let found = cheapest(&typed, objective, &targets, &config).expect("it is supported");
         assert!(found.undecided.is_none(), "seed {seed}\n{problem}");
         let difference = Difference::ALL[(seed / 3 % 2) as usize];
@@ -343,8 +339,7 @@ fn the_best_come_first() {
         let preferred = &targets[minimized..];
         let wanted = Wanted { number, difference, kept: &kept, preferred, straight: false };
         let answer = several(&typed, objective, &found.outcome, &wanted, &config).expect("it is supported");
-        let about =
-            format!("seed {seed} {difference} {quantifiers} {states:?}\n{problem}\n{found:?}\n{answer:#?}");
+        let about = format!("seed {seed} {difference}\n{problem}\n{found:?}\n{answer:#?}");
         let value = |value: &Value| (value.found, value.least);
         let mut values: Vec<(i64, i64)> = found.values[minimized..].iter().map(value).collect();
         values.extend(answer.others.iter().flat_map(|other| &other.values).map(value));
