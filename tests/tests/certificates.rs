@@ -331,7 +331,7 @@ fn no_instances_refute_what_is_wrong() {
 /// An instance may begin in one of several states, of which some are hopeless: what holds in those says nothing of the others.
 #[test]
 fn where_an_instance_is_not_says_nothing() {
-    let text = "system M { state x: 0..2; action go, stay; on go when x == 0 { x' = 1; } on go when x > 0 {} on stay {}
+    let text = "system M { state x: 0..2; action go, stay, wait; on go when x == 0 { x' = 1; } on go when x > 0 {} on stay | wait {}
         init x != 1; }
         // o: realizable
         objective o within 2 {
