@@ -57,9 +57,13 @@ fn answer_of(word: &str) -> Option<Option<bool>> {
     }
 }
 
-/// Literals, if all words are.
+/// Literals, if all words are. Those of variables of the program's own, such as Qute's `-16.e`, count as 0.
 fn numbers(words: &[&str]) -> Option<Vec<i32>> {
-    let number = |word: &&str| word.parse().ok().filter(|&number| number != i32::MIN);
+    let number = |word: &&str| {
+        let number = word.split_once('.').map_or(*word, |(number, _)| number);
+        let literal = number.parse().ok().filter(|&literal: &i32| literal != i32::MIN)?;
+        Some(if number == *word { literal } else { 0 })
+    };
     words.iter().map(number).collect()
 }
 
@@ -88,6 +92,7 @@ mod tests {
             is(Some(true), &[-1, 2, 3])
         );
         assert_eq!(heard("SAT\n-1 2 0\nSATISFIABLE", "exit status: 10"), is(Some(true), &[-1, 2]));
+        assert_eq!(heard("SAT\n-1 2 -3.e 0", "exit status: 10"), is(Some(true), &[-1, 2]));
         assert_eq!(heard("s cnf 0 3 3", "exit status: 20"), is(Some(false), &[]));
         assert_eq!(heard("s UNSATISFIABLE", "exit status: 0"), is(Some(false), &[]));
         assert_eq!(heard("c Satisfiable", "exit status: 10"), is(Some(true), &[]));
