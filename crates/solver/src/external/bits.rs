@@ -1,6 +1,6 @@
 //! The session of a SAT or QBF solver: each check is a process of its own, which gets a file of bits.
 
-use hyperplan_smt::{Script, Term, Value};
+use hyperplan_smt::{Features, Script, Term, Value};
 
 use super::assignment::Heard;
 use super::dialogue::{negate, out_of_memory};
@@ -31,6 +31,8 @@ impl Bits {
     }
 
     fn run(&mut self, script: &Script, assumptions: &[Term], deadline: &Deadline) -> Result<Answer, Error> {
+        // Where there are no bits for something, this names solvers that take it.
+        self.program.profile.logic(&Features::of(script))?;
         let query = Propositional::new(script, assumptions, self.format, deadline)?;
         let mut text = Vec::new();
         // Writing to a vector cannot fail.
