@@ -190,7 +190,7 @@ fn scripts_mean_the_same_as_bits() {
 }
 
 /// The most variables of states and actions of a formula that is decided by brute force here.
-const MOST: usize = 20;
+const MOST: usize = 24;
 
 #[test]
 fn objectives_mean_the_same_as_bits() {

@@ -59,7 +59,7 @@ impl Bits {
                         *value = true;
                     }
                 }
-                if heard.literals.is_empty() && query.symbols().next().is_some() {
+                if heard.literals.is_empty() && query.has_symbols() {
                     return Err(
                         self.misunderstood("an assignment to the outermost block", "nothing about that")
                     );

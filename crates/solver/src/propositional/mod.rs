@@ -209,9 +209,10 @@ impl Propositional {
         })
     }
 
-    /// The declared symbols that occur.
-    pub fn symbols(&self) -> impl Iterator<Item = Term> {
-        self.symbols.keys().copied()
+    /// Whether a declared symbol occurs.
+    #[must_use]
+    pub fn has_symbols(&self) -> bool {
+        !self.symbols.is_empty()
     }
 }
 
