@@ -139,7 +139,7 @@ pub enum Unsupported {
         format: Format,
     },
     /// Models and cores are asked for in SMT-LIB, and dialogues held.
-    #[error("{0} has no commands, so that there are no tracks to choose")]
+    #[error("{0} has no commands: it asks for no model and no core, and holds no dialogue")]
     NoTracks(Format),
     /// A search did not get far enough to make a dialogue.
     #[error("the search did not get to ask twice: give it more time")]

@@ -73,13 +73,17 @@ fn faults_are_told() {
     let crashed = error("echo 'unknown option --qdo'; exit 1");
     assert!(crashed.contains("ended without an answer (exit status: 1)"), "{crashed}");
     assert!(crashed.contains("unknown option --qdo"), "{crashed}");
-    assert!(matches!(check("echo 'out of memory' >&2; exit 1"), Ok((Answer::Unknown(Unknown::Memory), None))));
+    assert!(matches!(
+        check("echo 'out of memory' >&2; exit 1"),
+        Ok((Answer::Unknown(Unknown::Memory), None))
+    ));
 }
 
 #[test]
 fn a_line_of_any_length_is_one() {
     // 40,000 literals that are none of the query's, before those that are.
-    let body = "printf v; i=0; while [ $i -lt 40000 ]; do printf ' -3'; i=$((i+1)); done; echo ' 2 0'; exit 10";
+    let body =
+        "printf v; i=0; while [ $i -lt 40000 ]; do printf ' -3'; i=$((i+1)); done; echo ' 2 0'; exit 10";
     assert_eq!(check(body).expect("no error").1, Some(vec![Value::Bool(true), Value::Bool(false)]));
 }
 

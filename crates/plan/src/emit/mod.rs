@@ -215,13 +215,9 @@ fn build(encoder: &Encoder<'_>, config: &EmitConfig, dialect: &Dialect) -> Resul
     let mut changes = Vec::new();
     let format = config.format;
     if let Some(format) = format {
-        has_bits(encoder, config.track, format)?;
+        has_bits(encoder, config, format)?;
     }
-    let quantifiers = match (format, config.quantifiers) {
-        (Some(_), Quantifiers::Cegis) => return Err(Unsupported::Dialogue.into()),
-        (Some(Format::Dimacs), Quantifiers::Auto) => Quantifiers::Expand,
-        _ => quantifiers(config, blocks.len(), dialect, &mut changes)?,
-    };
+    let quantifiers = quantifiers(config, blocks.len(), dialect, &mut changes)?;
     let (body, found) = match quantifiers {
         Quantifiers::Cegis => {
             let (tape, found) = dialogue(encoder, config, &blocks, exists, &mut notes)?;
@@ -291,8 +287,8 @@ fn build(encoder: &Encoder<'_>, config: &EmitConfig, dialect: &Dialect) -> Resul
 }
 
 /// Refuses what a format of bits does not have.
-fn has_bits(encoder: &Encoder<'_>, track: Track, format: Format) -> Result<(), Unsupported> {
-    if track != Track::Single {
+fn has_bits(encoder: &Encoder<'_>, config: &EmitConfig, format: Format) -> Result<(), Unsupported> {
+    if config.track != Track::Single || config.quantifiers == Quantifiers::Cegis {
         return Err(Unsupported::NoTracks(format));
     }
     if encoder.states.is_arithmetic() {
@@ -311,6 +307,7 @@ fn quantifiers(
     notes: &mut Vec<Note>,
 ) -> Result<Quantifiers, Error> {
     match (config.track, config.quantifiers) {
+        (_, Quantifiers::Auto) if config.format == Some(Format::Dimacs) => Ok(Quantifiers::Expand),
         (_, Quantifiers::Explicit) => Err(Unsupported::NothingToWrite.into()),
         (Track::Incremental, Quantifiers::Auto | Quantifiers::Cegis)
         | (Track::Single, Quantifiers::Cegis) => Ok(Quantifiers::Cegis),
