@@ -14,6 +14,7 @@ pub mod fuzz;
 pub mod judge;
 pub mod mixed;
 pub mod model;
+pub mod qbf;
 pub mod random;
 pub mod shrink;
 pub mod whole;

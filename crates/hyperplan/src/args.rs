@@ -347,6 +347,9 @@ pub(crate) struct Emit {
     /// A file for each value of a constant, such as T
     #[arg(long, value_name = "CONST=LO..HI", value_parser = range)]
     pub(crate) each: Option<(String, i64, i64)>,
+    /// What it is written in; without it, what --solver reads, else SMT-LIB 2
+    #[arg(long, value_enum, value_name = "FORMAT", conflicts_with = "folder")]
+    pub(crate) format: Option<EmitFormat>,
     /// The track of SMT-COMP that the file is for
     #[arg(long, value_enum, value_name = "TRACK", default_value_t = Track::Single)]
     pub(crate) track: Track,
@@ -377,6 +380,19 @@ pub(crate) struct Emit {
     /// Seconds for the whole command
     #[arg(long, value_name = "SECONDS")]
     pub(crate) timeout: Option<f64>,
+}
+
+/// What a benchmark is written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum EmitFormat {
+    /// SMT-LIB 2
+    Smt2,
+    /// Gates with quantifiers: QCIR-14, prenex and cleansed
+    Qcir,
+    /// Clauses with quantifiers: QDIMACS 1.1
+    Qdimacs,
+    /// Clauses, with quantifiers expanded: DIMACS
+    Dimacs,
 }
 
 /// A family of benchmarks on random maps.

@@ -10,7 +10,7 @@ use crate::pictures::Picture;
 use crate::signals;
 use chrono::{DateTime, NaiveDate, Utc};
 use hyperplan_plan::{Config, States, Status, Track};
-use hyperplan_solver::{Deadline, Spec};
+use hyperplan_solver::{Deadline, Format, Spec};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -82,6 +82,16 @@ pub(crate) fn track(typed: args::Track) -> Track {
         args::Track::Incremental => Track::Incremental,
         args::Track::Model => Track::Model,
         args::Track::UnsatCore => Track::UnsatCore,
+    }
+}
+
+/// What a benchmark is written in: nothing stands for SMT-LIB 2.
+pub(crate) fn format(typed: args::EmitFormat) -> Option<Format> {
+    match typed {
+        args::EmitFormat::Smt2 => None,
+        args::EmitFormat::Qcir => Some(Format::Qcir),
+        args::EmitFormat::Qdimacs => Some(Format::Qdimacs),
+        args::EmitFormat::Dimacs => Some(Format::Dimacs),
     }
 }
 

@@ -127,6 +127,7 @@ fn unsupported(what: &Unsupported) -> String {
             "--quantifiers {quantifiers} gives a single query, which is no incremental benchmark; use --quantifiers \
              cegis"
         ),
+        Unsupported::NoBits { .. } | Unsupported::NoTracks(_) => format!("{what}; use --format smt2"),
         Unsupported::NothingToWrite => format!("{what}; use --quantifiers keep, expand or cegis"),
         Unsupported::Dialogue => format!("{what}; use --quantifiers keep or expand, or --track incremental"),
         Unsupported::OneCheck => format!("{what}; use --quantifiers keep or expand"),

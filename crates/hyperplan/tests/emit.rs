@@ -139,6 +139,33 @@ fn what_is_changed_for_a_solver_is_said() {
 }
 
 #[test]
+fn files_of_bits_say_what_they_are() {
+    let of = |options: &[&str]| emit(&[&["--objective", "sp"], options].concat());
+    let clauses = of(&["--format", "dimacs", "--states", "bitvec"]);
+    assert!(clauses.contains("\nc Status: sat\n") && clauses.contains(" p.x@0 bit 0\n"), "{clauses}");
+    assert!(clauses.contains("\np cnf ") && !clauses.contains("\ne "), "{clauses}");
+    let quantified = of(&["--format", "qdimacs"]);
+    assert!(quantified.contains("\np cnf ") && quantified.contains("\ne "), "{quantified}");
+    // What the solver reads, unless something else is asked for.
+    assert_eq!(of(&["--solver", "depqbf", "--status", "sat"]), {
+        of(&["--format", "qdimacs", "--status", "sat"]).replace("Target solver: any", "Target solver: depqbf")
+    });
+    assert!(of(&["--solver", "depqbf", "--format", "smt2"]).starts_with("(set-info "));
+    let gates = of(&["--format", "qcir", "--no-comments"]);
+    assert!(gates.starts_with("#QCIR-G14 ") && gates.contains("\nexists("), "{gates}");
+    assert!(!gates.contains("p.at"), "{gates}");
+    for (options, message) in [
+        (&["--format", "qcir", "--track", "model"][..], "QCIR has no commands"),
+        (&["--format", "qcir", "--quantifiers", "cegis"], "QCIR has no commands"),
+        (&["--format", "qdimacs", "--states", "int"], "which no bits stand for"),
+    ] {
+        let run = hyperplan(&[&["emit", "rooms.hp", "--objective", "sp"], options].concat());
+        assert_eq!(run.status, 2, "{}", run.stdout);
+        assert!(run.stderr.contains(message), "{}", run.stderr);
+    }
+}
+
+#[test]
 fn a_printed_model_becomes_a_strategy() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let (printed, saved) = (folder.path().join("model.txt"), folder.path().join("plan.json"));

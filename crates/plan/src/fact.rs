@@ -5,7 +5,7 @@ use crate::evidence::Evidence;
 use crate::watch::Standing;
 use hyperplan_encode as encode;
 use hyperplan_problem::answer::{Quantifiers, ReasonCode, States};
-use hyperplan_solver::{self as solver, PrintedModelError, Unknown};
+use hyperplan_solver::{self as solver, Format, PrintedModelError, Unknown};
 use hyperplan_verify as verify;
 use std::fmt::Display;
 use std::io;
@@ -128,6 +128,19 @@ pub enum Unsupported {
     /// No solver for integers and reals is there.
     #[error("a search with integers or reals takes z3, cvc5 or yices, and none was found")]
     NoArithmeticSolver,
+    /// Bits cannot stand for what has no bounds.
+    #[error("{}, which no bits stand for: {format} is for finite systems", unbounded(.system.as_deref(), *.states))]
+    NoBits {
+        /// The system that has variables without bounds, if one has.
+        system: Option<String>,
+        /// How states are written.
+        states: States,
+        /// What the query was to be written in.
+        format: Format,
+    },
+    /// Models and cores are asked for in SMT-LIB, and dialogues held.
+    #[error("{0} has no commands: it asks for no model and no core, and holds no dialogue")]
+    NoTracks(Format),
     /// A search did not get far enough to make a dialogue.
     #[error("the search did not get to ask twice: give it more time")]
     ShortDialogue,
@@ -149,6 +162,13 @@ pub enum Unsupported {
     /// A model has a value that cannot be read.
     #[error(transparent)]
     Value(PrintedModelError),
+}
+
+fn unbounded(system: Option<&str>, states: States) -> String {
+    match system {
+        Some(system) => format!("system {system} has variables without bounds"),
+        None => format!("states are written as {states}"),
+    }
 }
 
 fn subject(system: Option<&str>, states: States) -> String {

@@ -125,6 +125,9 @@ pub enum Error {
         /// The solver.
         name: String,
     },
+    /// The deadline passed while a query was written.
+    #[error("time was up before the query was written")]
+    Interrupted,
     /// Values were asked for where the last answer was not sat.
     #[error("solver {name} has no model: its last answer was not sat")]
     NoModel {

@@ -7,11 +7,13 @@
 //!
 //! No answer is trusted here: whoever asks should evaluate the script under the values.
 
+mod circuit;
 mod deadline;
 mod embedded;
 mod error;
 mod external;
 mod open;
+mod propositional;
 mod session;
 mod transcript;
 
@@ -25,5 +27,6 @@ pub use external::{
     Standalone, discover, end_with_parent, responses, says_what_to_run,
 };
 pub use open::open;
+pub use propositional::{Format, Propositional};
 pub use session::{Answer, Identity, Options, QuerySize, Session};
 pub use transcript::keep_query;

@@ -64,15 +64,15 @@ impl Drop for Transcript {
 }
 
 /// What files for queries of a solver are called, in order.
-fn names(prefix: &str, solver: &str) -> impl Iterator<Item = String> {
+fn names(prefix: &str, solver: &str, ending: &str) -> impl Iterator<Item = String> {
     let name: String = solver.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-    (1..=999_999_u32).map(move |number| format!("{prefix}{number:04}-{name}.smt2"))
+    (1..=999_999_u32).map(move |number| format!("{prefix}{number:04}-{name}.{ending}"))
 }
 
 /// A new file in a directory, which is made if need be: the first number that is free.
 fn numbered(directory: &Path, solver: &str) -> io::Result<(PathBuf, File)> {
     fs::create_dir_all(directory)?;
-    for name in names("", solver) {
+    for name in names("", solver, "smt2") {
         let path = directory.join(name);
         match OpenOptions::new().write(true).create_new(true).open(&path) {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
@@ -93,8 +93,19 @@ pub fn keep_query(
     solver: &str,
     print: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<PathBuf> {
+    keep_file(directory, prefix, solver, "smt2", print)
+}
+
+/// The same with another ending than that of SMT-LIB.
+pub(crate) fn keep_file(
+    directory: &Path,
+    prefix: &str,
+    solver: &str,
+    ending: &str,
+    print: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<PathBuf> {
     fs::create_dir_all(directory)?;
-    create(directory, names(prefix, solver), print)
+    create(directory, names(prefix, solver, ending), print)
 }
 
 pub(crate) fn cannot_keep(directory: &Path, source: io::Error) -> Error {

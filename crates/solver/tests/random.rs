@@ -5,7 +5,7 @@ mod common;
 use common::{Growing, installed};
 use hyperplan_random::Random;
 use hyperplan_smt::Term;
-use hyperplan_solver::{Answer, Catalog, Deadline, Options, Spec, open};
+use hyperplan_solver::{Answer, Catalog, Deadline, Options, Spec, discover, open};
 use std::path::Path;
 
 fn agrees(spec: &Spec, seeds: std::ops::Range<u64>) {
@@ -48,6 +48,20 @@ fn back_ends_agree_with_brute_force() {
 fn external_solvers_agree_with_brute_force() {
     for name in installed(&["z3", "cvc5", "yices"]) {
         agrees(&Spec::Profile(name), 0..40);
+    }
+}
+
+#[test]
+fn solvers_of_bits_agree_with_brute_force() {
+    for name in installed(&["depqbf", "cryptominisat", "minisat", "picosat"]) {
+        agrees(&Spec::Profile(name), 0..20);
+    }
+    // These come with no system.
+    let optional = ["caqe", "qute", "rareqs", "kissat"];
+    for solver in discover().into_iter().filter(|solver| optional.contains(&solver.name.as_str())) {
+        if solver.path.is_some() {
+            agrees(&Spec::Profile(solver.name), 0..20);
+        }
     }
 }
 

@@ -12,7 +12,7 @@ use crate::proof::Made;
 use hyperplan_outlet::one_line;
 use hyperplan_plan::{EmitConfig, Emitted, Limits, Quantifiers, States, Status, emit};
 use hyperplan_problem::{Objective, Problem, Type, display};
-use hyperplan_solver::Deadline;
+use hyperplan_solver::{Deadline, Format};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -36,7 +36,7 @@ pub(crate) fn run(args: &args::Emit, file: &Path, out: &mut Output) -> Result {
         let several = objectives.len() > 1 || setting.is_some() || encodings(args).count() > 1;
         let target = match &target {
             Some(target) => target,
-            None => target.insert(Target::new(args.output.as_deref(), several)?),
+            None => target.insert(Target::new(args.output.as_deref(), several, ending(&common))?),
         };
         if args.certify && matches!(target, Target::Standard) {
             return Err(Failure::input(
@@ -107,13 +107,17 @@ fn certify(
 pub(super) fn common(args: &args::Emit, date: &str, out: &Output) -> Result<EmitConfig> {
     let configured = Configured::new(out);
     let solver = |text: &String| config::solver(text, &configured);
+    let solver = args.solver.as_ref().map(solver).transpose()?;
+    // A family is laid out as SMT-LIB has it.
+    let reads = || solver.as_ref().filter(|_| args.family.folder.is_none())?.profile()?.format();
     let config = EmitConfig {
-        solver: args.solver.as_ref().map(solver).transpose()?,
+        format: args.format.map_or_else(reads, config::format),
         track: config::track(args.track),
         status: config::status(args.status),
         comments: !args.no_comments,
         limits: Limits { prune: !args.no_pruning, ..Limits::default() },
         deadline: config::deadline(args.timeout, None)?,
+        solver,
         ..EmitConfig::new(date)
     };
     Ok(match &args.author {
@@ -178,8 +182,13 @@ impl Name<'_> {
         if self.args.quantifiers.len() > 1 {
             name += &format!("-{}", config.quantifiers);
         }
-        name + ".smt2"
+        name + "." + ending(config)
     }
+}
+
+/// How files end.
+fn ending(config: &EmitConfig) -> &'static str {
+    config.format.map_or("smt2", Format::name)
 }
 
 /// Where the benchmarks go.
@@ -190,7 +199,7 @@ enum Target {
 }
 
 impl Target {
-    fn new(output: Option<&Path>, several: bool) -> Result<Self> {
+    fn new(output: Option<&Path>, several: bool, ending: &str) -> Result<Self> {
         let Some(path) = output else {
             if several {
                 return Err(Failure::input("several files need a directory: -o DIR"));
@@ -200,7 +209,7 @@ impl Target {
         if !several && path == Path::new("-") {
             return Ok(Target::Standard);
         }
-        if several && path.extension().is_some_and(|extension| extension == "smt2") && !path.is_dir() {
+        if several && path.extension().is_some_and(|extension| extension == ending) && !path.is_dir() {
             let path = path.display();
             return Err(Failure::input(format_args!(
                 "several files need a directory, and {path} looks like a file"
@@ -237,7 +246,7 @@ pub(super) const LARGEST: u64 = 50_000_000;
 
 fn write_to(path: &Path, emitted: &mut Emitted, out: &Output) -> Result<()> {
     let bytes = files::write(path, |to| emitted.write(to))?;
-    if bytes > LARGEST {
+    if bytes > LARGEST && emitted.format.is_none() {
         let megabytes = bytes / 1_000_000;
         out.remark(format_args!("note: {} has {megabytes} MB; SMT-LIB takes at most 50", path.display()));
     }

@@ -1,6 +1,6 @@
 //! What a benchmark says of itself, in its `:source`.
 
-use super::EmitConfig;
+use super::{EmitConfig, Track};
 use crate::config::Quantifiers;
 use crate::fact::Note;
 use hyperplan_encode::{Encoder, States};
@@ -45,6 +45,11 @@ pub(super) fn source(
     line(&format!("Horizons: {}.", horizons.join(", ")));
     line(&format!("States: {}.", states(encoder.states)));
     line(&format!("Quantifiers: {quantifiers}."));
+    if let Some(asked) = track(config.track) {
+        line(&format!(
+            "Track: {asked}; competitions add the commands for that to single queries by themselves."
+        ));
+    }
     for change in changes {
         line(&format!("For {target}: {change}."));
     }
@@ -57,6 +62,15 @@ pub(super) fn source(
         }
     }
     text.replace(" | ", " or ")
+}
+
+/// What a file asks for besides the answer, which no submission does.
+fn track(track: Track) -> Option<&'static str> {
+    match track {
+        Track::Single | Track::Incremental => None,
+        Track::Model => Some("asks for a model"),
+        Track::UnsatCore => Some("asks for an unsatisfiable core"),
+    }
 }
 
 /// How the objective's operators are read, as the language has it.

@@ -16,7 +16,7 @@ use dialect::Dialect;
 use hyperplan_encode::{Encoder, Goal, Limits, Narrowing, States};
 use hyperplan_problem::{Mode, Objective, PathId, Problem, Quantifier};
 use hyperplan_smt::{Ask, Features, Header, Script, WriteOptions, write_header, write_script};
-use hyperplan_solver::{Deadline, Spec};
+use hyperplan_solver::{Deadline, Format, Propositional, Spec};
 use std::io;
 use tape::Tape;
 
@@ -42,6 +42,8 @@ pub enum Track {
 pub struct EmitConfig {
     /// The solver that the file is for, if one.
     pub solver: Option<Spec>,
+    /// What it is written in; `None` for SMT-LIB 2.
+    pub format: Option<Format>,
     /// How quantifiers are written; [`Quantifiers::Cegis`] is a dialogue.
     pub quantifiers: Quantifiers,
     /// How states are written; without, hyperplan chooses.
@@ -70,6 +72,7 @@ impl EmitConfig {
     pub fn new(date: impl Into<String>) -> Self {
         EmitConfig {
             solver: None,
+            format: None,
             quantifiers: Quantifiers::Auto,
             states: None,
             track: Track::Single,
@@ -88,7 +91,9 @@ impl EmitConfig {
 pub struct Emitted {
     body: Body,
     options: WriteOptions,
-    /// The logic.
+    /// What it is written in; `None` for SMT-LIB 2.
+    pub format: Option<Format>,
+    /// The logic; empty where it is not written in SMT-LIB.
     pub logic: String,
     /// The expected answer; of a dialogue, to its last check.
     pub status: Status,
@@ -96,9 +101,9 @@ pub struct Emitted {
     pub quantifiers: Quantifiers,
     /// How states are written.
     pub states: States,
-    /// Declared symbols.
+    /// Declared symbols, or variables of bits.
     pub symbols: usize,
-    /// Assertions.
+    /// Assertions, clauses, or gates.
     pub assertions: usize,
     /// What the user should know.
     pub notes: Vec<Note>,
@@ -107,6 +112,7 @@ pub struct Emitted {
 enum Body {
     Query(Script),
     Dialogue(Tape),
+    Bits(Box<Propositional>),
 }
 
 impl Emitted {
@@ -122,15 +128,26 @@ impl Emitted {
                 tape.copy(to)?;
                 to.write_all(b"(exit)\n")
             }
+            Body::Bits(bits) => {
+                let Header { source, license, status, .. } = &self.options.header;
+                let mut about: Vec<String> =
+                    source.iter().flat_map(|text| text.lines().map(str::to_owned)).collect();
+                about.extend(license.iter().map(|license| format!("License: {license}")));
+                about.extend(status.map(|status| format!("Status: {}", status.text())));
+                if !self.options.bare {
+                    about.extend([String::new(), "What variables stand for:".to_owned()]);
+                }
+                bits.write(to, &about, self.options.bare)
+            }
         }
     }
 
-    /// The query; `None` where it is a dialogue.
+    /// The query; `None` where it is a dialogue, or bits.
     #[must_use]
     pub fn script(&self) -> Option<&Script> {
         match &self.body {
             Body::Query(script) => Some(script),
-            Body::Dialogue(_) => None,
+            Body::Dialogue(_) | Body::Bits(_) => None,
         }
     }
 }
@@ -149,7 +166,8 @@ pub fn emit(problem: &Problem, objective: &Objective, config: &EmitConfig) -> Re
     let emitted =
         settled(problem, objective, config.states, limits, &stop, |encoder| build(encoder, config, &dialect));
     emitted.map_err(|error| match error {
-        Error::Encode(hyperplan_encode::Error::Interrupted) => Error::Late(config.deadline.reason()),
+        Error::Encode(hyperplan_encode::Error::Interrupted)
+        | Error::Solver(hyperplan_solver::Error::Interrupted) => Error::Late(config.deadline.reason()),
         error => error,
     })
 }
@@ -195,6 +213,10 @@ fn build(encoder: &Encoder<'_>, config: &EmitConfig, dialect: &Dialect) -> Resul
     let blocks = objective.blocks();
     let exists = is_existential(objective);
     let mut changes = Vec::new();
+    let format = config.format;
+    if let Some(format) = format {
+        has_bits(encoder, config, format)?;
+    }
     let quantifiers = quantifiers(config, blocks.len(), dialect, &mut changes)?;
     let (body, found) = match quantifiers {
         Quantifiers::Cegis => {
@@ -217,11 +239,19 @@ fn build(encoder: &Encoder<'_>, config: &EmitConfig, dialect: &Dialect) -> Resul
         notes.push(Note::Counterexample { objective: objective.name.clone() });
     }
     let ask = asked(config.track, status)?;
-    let (features, symbols, assertions) = match &body {
+    let (features, mut symbols, mut assertions) = match &body {
         Body::Query(script) => (Features::of(script), script.symbols().len(), script.len()),
         Body::Dialogue(tape) => (tape.features(), tape.symbols, tape.assertions),
+        Body::Bits(_) => (Features::default(), 0, 0),
     };
-    let logic = dialect.logic(&features, &mut changes)?;
+    let (body, logic) = match (body, format) {
+        (Body::Query(script), Some(format)) => {
+            let bits = Propositional::new(&script, &[], format, &config.deadline)?;
+            (symbols, assertions) = (bits.variables(), bits.size());
+            (Body::Bits(Box::new(bits)), String::new())
+        }
+        (body, _) => (body, dialect.logic(&features, &mut changes)?),
+    };
     let header = Header {
         source: Some(about::source(
             encoder,
@@ -232,7 +262,7 @@ fn build(encoder: &Encoder<'_>, config: &EmitConfig, dialect: &Dialect) -> Resul
         license: Some("https://creativecommons.org/licenses/by/4.0/".into()),
         category: Some("crafted".into()),
         // A dialogue says it of each check.
-        status: matches!(body, Body::Query(_)).then_some(status),
+        status: (!matches!(body, Body::Dialogue(_))).then_some(status),
     };
     let options = WriteOptions {
         header,
@@ -245,6 +275,7 @@ fn build(encoder: &Encoder<'_>, config: &EmitConfig, dialect: &Dialect) -> Resul
     Ok(Emitted {
         body,
         options,
+        format,
         logic,
         status,
         quantifiers,
@@ -255,6 +286,19 @@ fn build(encoder: &Encoder<'_>, config: &EmitConfig, dialect: &Dialect) -> Resul
     })
 }
 
+/// Refuses what a format of bits does not have.
+fn has_bits(encoder: &Encoder<'_>, config: &EmitConfig, format: Format) -> Result<(), Unsupported> {
+    if config.track != Track::Single || config.quantifiers == Quantifiers::Cegis {
+        return Err(Unsupported::NoTracks(format));
+    }
+    if encoder.states.is_arithmetic() {
+        let systems = encoder.objective.paths.keys().map(|path| encoder.task.system(path));
+        let system = systems.into_iter().find(|system| !system.is_finite()).map(|system| system.name.clone());
+        return Err(Unsupported::NoBits { system, states: encoder.states, format });
+    }
+    Ok(())
+}
+
 /// How quantifiers are written, and whether that fits the track.
 fn quantifiers(
     config: &EmitConfig,
@@ -263,6 +307,7 @@ fn quantifiers(
     notes: &mut Vec<Note>,
 ) -> Result<Quantifiers, Error> {
     match (config.track, config.quantifiers) {
+        (_, Quantifiers::Auto) if config.format == Some(Format::Dimacs) => Ok(Quantifiers::Expand),
         (_, Quantifiers::Explicit) => Err(Unsupported::NothingToWrite.into()),
         (Track::Incremental, Quantifiers::Auto | Quantifiers::Cegis)
         | (Track::Single, Quantifiers::Cegis) => Ok(Quantifiers::Cegis),

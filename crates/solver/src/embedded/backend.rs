@@ -1,6 +1,5 @@
 //! What the engine wants of a SAT solver.
 
-use std::ops::Not;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -33,31 +32,4 @@ pub(super) struct Setup {
     pub(super) dialogue: bool,
     /// Set when it is to stop: to be looked at every few milliseconds while it solves.
     pub(super) stop: Arc<AtomicBool>,
-}
-
-/// A literal: the number of a variable, from 1 on, negative where it is negated.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) struct Lit(i32);
-
-impl Lit {
-    /// The literal of a variable, which is not 0.
-    pub(super) fn new(variable: i32) -> Lit {
-        Lit(variable)
-    }
-
-    pub(super) fn number(self) -> i32 {
-        self.0
-    }
-
-    pub(super) fn variable(self) -> u32 {
-        self.0.unsigned_abs()
-    }
-}
-
-impl Not for Lit {
-    type Output = Lit;
-
-    fn not(self) -> Lit {
-        Lit(-self.0)
-    }
 }

@@ -2,11 +2,9 @@
 
 use hyperplan_smt::{Header, Script, Sort, Term, Value, WriteOptions, write_script};
 
-use super::bits::Gates;
-use super::budget::{Budget, Halt, Memory};
-use super::cnf::{Cnf, width};
 use super::table::Built;
 use super::worker::Worker;
+use crate::circuit::{Budget, Cnf, Halt, Memory, Sink as _, width};
 use crate::deadline::Deadline;
 use crate::error::{Error, Unknown};
 use crate::session::{Answer, Identity, Options, QuerySize, Session};
@@ -19,7 +17,7 @@ pub(crate) struct Engine {
     options: Options,
     /// The limit, counted from the start of the session.
     memory: Option<Memory>,
-    cnf: Cnf,
+    cnf: Cnf<Worker>,
     version: String,
     /// How many assertions have been taken.
     fed: usize,
@@ -35,7 +33,7 @@ impl Engine {
     pub(crate) fn new(name: &str, backend: Built, options: &Options) -> Result<Engine, Error> {
         let memory = options.memory_mib.map(Memory::growing_by).transpose()?;
         let worker = Worker::start(name, backend.serve, options.seed, options.incremental)?;
-        let cnf = Cnf::new(Gates::new(worker));
+        let cnf = Cnf::new(worker);
         Ok(Engine {
             name: name.to_owned(),
             options: options.clone(),
@@ -61,7 +59,7 @@ impl Engine {
 
     /// Whether the script is satisfiable under the assumptions, after encoding what is new of it.
     fn answer(&mut self, script: &Script, assumptions: &[Term], budget: &Budget) -> Result<bool, Halt> {
-        self.cnf.gates.sat.ready(budget)?;
+        self.cnf.gates.sink.ready(budget)?;
         self.cnf.finish(&script.terms, budget)?;
         while self.fed < script.len() {
             self.cnf.assert(script, script.assertion(self.fed));
@@ -73,7 +71,7 @@ impl Engine {
             literals.push(self.cnf.assumption(script, t));
             self.cnf.finish(&script.terms, budget)?;
         }
-        let answer = self.cnf.gates.sat.solve(&literals, budget)?;
+        let answer = self.cnf.gates.sink.solve(&literals, budget)?;
         self.has_model = answer;
         self.refuted = !answer && literals.is_empty();
         Ok(answer)
@@ -86,7 +84,7 @@ impl Engine {
         let mut number = 0;
         let literals = self.cnf.known_bits(symbol, width(&script.terms, symbol)).unwrap_or_default();
         for (i, &literal) in literals.iter().enumerate() {
-            number |= u128::from(self.cnf.gates.sat.is_true(literal)) << i;
+            number |= u128::from(self.cnf.gates.sink.is_true(literal)) << i;
         }
         number
     }
@@ -131,7 +129,7 @@ impl Session for Engine {
         if !self.has_model {
             return Err(Error::NoModel { name: self.name.clone() });
         }
-        let sat = &self.cnf.gates.sat;
+        let sat = &self.cnf.gates.sink;
         let mut values = Vec::with_capacity(symbols.len());
         for &symbol in symbols {
             values.push(match script.terms.sort(symbol) {
@@ -152,6 +150,7 @@ impl Session for Engine {
     }
 
     fn size(&self) -> QuerySize {
-        self.cnf.gates.size()
+        let gates = &self.cnf.gates;
+        QuerySize { clauses: gates.sink.size(), variables: gates.variables(), ..QuerySize::default() }
     }
 }

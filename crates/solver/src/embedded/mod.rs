@@ -1,15 +1,12 @@
 //! The embedded engine: scripts of Booleans and bit-vectors, by bit-blasting and SAT.
 //!
-//! Terms become clauses (`cnf`, `bits`), which one of several SAT solvers gets (`table` has them), in a thread
+//! Terms become clauses (`circuit`), which one of several SAT solvers gets (`table` has them), in a thread
 //! of its own (`worker`).
 
 mod backend;
 mod batsat;
-mod bits;
-mod budget;
 #[cfg(feature = "cadical")]
 mod cadical;
-mod cnf;
 mod engine;
 mod refute;
 mod table;

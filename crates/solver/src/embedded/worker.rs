@@ -10,8 +10,8 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::backend::{Backend, Lit, Setup};
-use super::budget::{Budget, Halt};
+use super::backend::{Backend, Setup};
+use crate::circuit::{Budget, Halt, Lit, Sink};
 use crate::error::Error;
 
 /// How often the budget is looked at while the solver searches.
@@ -101,11 +101,6 @@ impl Worker {
         Ok(Worker { name: name.to_owned(), asks, replies, stop, batch, clauses: 0, is_late: false, model })
     }
 
-    /// How many clauses were added.
-    pub(super) fn clauses(&self) -> usize {
-        self.clauses
-    }
-
     /// Waits for the end of a search that was given up on; to be called before clauses are added.
     pub(super) fn ready(&mut self, budget: &Budget) -> Result<(), Halt> {
         if self.is_late {
@@ -113,17 +108,6 @@ impl Worker {
             self.is_late = false;
         }
         Ok(())
-    }
-
-    /// Adds a clause.
-    pub(super) fn clause(&mut self, literals: &[Lit]) {
-        self.clauses += 1;
-        self.batch.extend(literals.iter().map(|literal| literal.number()));
-        self.batch.push(0);
-        if self.batch.len() >= BATCH {
-            let batch = std::mem::replace(&mut self.batch, Vec::with_capacity(BATCH));
-            self.ask(Ask::Clauses(batch));
-        }
     }
 
     /// Whether the clauses are satisfiable under the assumptions.
@@ -186,6 +170,29 @@ impl Worker {
 
     fn failed(&self, message: String) -> Error {
         Error::Engine { name: self.name.clone(), message }
+    }
+}
+
+impl Sink for Worker {
+    const QUANTIFIERS: bool = false;
+
+    fn unsupported(what: &str) -> Error {
+        let what = format!("the builtin solver cannot handle {what}: use z3, cvc5 or yices");
+        Error::Unsupported { what }
+    }
+
+    fn clause(&mut self, literals: &[Lit]) {
+        self.clauses += 1;
+        self.batch.extend(literals.iter().map(|literal| literal.number()));
+        self.batch.push(0);
+        if self.batch.len() >= BATCH {
+            let batch = std::mem::replace(&mut self.batch, Vec::with_capacity(BATCH));
+            self.ask(Ask::Clauses(batch));
+        }
+    }
+
+    fn size(&self) -> usize {
+        self.clauses
     }
 }
 
@@ -264,7 +271,7 @@ mod tests {
         assert!(worker.solve(&[], &after(60_000)).expect("an answer"));
         let [a, b, c] = [1, 2, 3].map(|number| worker.is_true(Lit::new(number)));
         assert_eq!((a, b, c, worker.is_true(!Lit::new(2))), (true, false, false, true));
-        assert_eq!(worker.clauses(), 4 * BATCH + 1);
+        assert_eq!(worker.size(), 4 * BATCH + 1);
     }
 
     #[test]

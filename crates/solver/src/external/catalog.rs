@@ -14,6 +14,7 @@ use super::profile::{Assumptions, FILE, Install, Profile, Theory};
 use super::spec::Spec;
 use crate::embedded;
 use crate::error::Error;
+use crate::propositional::Format;
 use crate::session::{Options, Quantifiers};
 
 /// The solvers that can be named. Later files come before earlier ones, and all before hyperplan's own table.
@@ -51,6 +52,7 @@ struct Entry {
     like: Option<Spanned<String>>,
     aliases: Option<Vec<String>>,
     program: Option<Spanned<String>>,
+    format: Option<Reads>,
     arguments: Option<Vec<String>>,
     one_shot: Option<Vec<String>>,
     incremental: Option<bool>,
@@ -63,6 +65,16 @@ struct Entry {
     version: Option<Vec<String>>,
     tells_version: Option<bool>,
     install: Option<Install>,
+}
+
+/// What a program reads.
+#[derive(Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Reads {
+    Smt2,
+    Dimacs,
+    Qdimacs,
+    Qcir,
 }
 
 impl Default for Catalog {
@@ -188,6 +200,7 @@ impl Entry {
             like: _,
             aliases: _,
             program,
+            format: _,
             arguments,
             one_shot,
             incremental: _,
@@ -250,6 +263,13 @@ impl Entry {
             );
             return Err((at, what));
         }
+        let format = match self.format {
+            None => base.format,
+            Some(Reads::Smt2) => None,
+            Some(Reads::Dimacs) => Some(Format::Dimacs),
+            Some(Reads::Qdimacs) => Some(Format::Qdimacs),
+            Some(Reads::Qcir) => Some(Format::Qcir),
+        };
         let asks = |command: &&String| Request::of(&words(command)).is_some();
         if let Some(command) = self.setup.iter().flatten().find(asks) {
             let what = format!("{command} in `setup` has an answer, which nobody waits for; leave it out");
@@ -259,9 +279,11 @@ impl Entry {
             name,
             aliases: self.aliases.unwrap_or(base.aliases),
             program,
+            format,
             arguments,
             one_shot: self.one_shot.or(inherited),
-            incremental: self.incremental.unwrap_or(base.incremental),
+            // What reads a file of bits answers once.
+            incremental: format.is_none() && self.incremental.unwrap_or(base.incremental),
             assumptions: self.assumptions.unwrap_or(base.assumptions),
             setup: self.setup.unwrap_or(base.setup),
             logic: self.logic.or(base.logic),

@@ -1,6 +1,7 @@
 //! Which solvers this machine has.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::thread;
 
 use super::catalog::{Catalog, profiles};
@@ -57,7 +58,7 @@ impl Catalog {
     }
 }
 
-fn found(profile: &Profile) -> Found {
+fn found(profile: &Arc<Profile>) -> Found {
     let (path, tried) = locate(profile);
     let version = path.as_deref().and_then(|path| version::ask(path, &profile.version));
     let abilities = path.as_deref().map(|path| probe::abilities(profile, path)).unwrap_or_default();

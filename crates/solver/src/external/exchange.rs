@@ -67,6 +67,16 @@ impl Exchange {
         self.process.send(text, deadline);
     }
 
+    /// Has it say lines of any length: what describes an assignment may be one.
+    pub(super) fn take_long_lines(&mut self) {
+        self.process.take_long_lines();
+    }
+
+    /// How it ended, or has to.
+    pub(super) fn end(&mut self) -> String {
+        self.process.kill()
+    }
+
     /// There is no more to send.
     pub(super) fn close_input(&mut self) {
         self.process.close_input();
@@ -83,7 +93,7 @@ impl Exchange {
     }
 
     /// What comes next. That it cannot be kept, or what was sent before, is an error.
-    fn next(&mut self, deadline: &Deadline) -> Result<Next, Error> {
+    pub(super) fn next(&mut self, deadline: &Deadline) -> Result<Next, Error> {
         if let Some(transcript) = &mut self.transcript {
             transcript.flush()?;
         }
@@ -198,8 +208,13 @@ impl Exchange {
 
     /// It ended without the reply that was due.
     fn crashed(&mut self) -> Error {
+        self.crashed_after("")
+    }
+
+    /// It ended without an answer, and said this last.
+    pub(super) fn crashed_after(&mut self, said: &str) -> Error {
         let status = self.process.kill();
-        let said = last_words("", &self.process.last_errors());
+        let said = last_words(said, &self.process.last_errors());
         if let Some(transcript) = &mut self.transcript {
             transcript.comment(&format!("({status})"));
             transcript.comment(&said);

@@ -1,5 +1,7 @@
 //! Solvers as processes, spoken to in SMT-LIB 2 over pipes.
 
+mod assignment;
+mod bits;
 mod catalog;
 mod dialogue;
 mod discover;
@@ -21,6 +23,7 @@ mod watchdog;
 
 use std::sync::Arc;
 
+use bits::Bits;
 use dialogue::Dialogue;
 use one_shot::OneShot;
 use program::Program;
@@ -62,6 +65,9 @@ pub(crate) fn open_command(line: &str, options: &Options) -> Result<Box<dyn Sess
 }
 
 fn session(program: Program, options: &Options) -> Box<dyn Session> {
+    if let Some(format) = program.profile.format {
+        return Box::new(Bits::new(program, format, options));
+    }
     // One that answers a single check may wait for the end of its input.
     if program.takes_file() || !program.profile.incremental {
         return Box::new(OneShot::new(program, options));

@@ -51,7 +51,7 @@ impl OneShot {
 
     fn run(&mut self, script: &Script, assumptions: &[Term], deadline: &Deadline) -> Result<Answer, Error> {
         let Query { text, asks_version, symbols } = self.query(script, assumptions)?;
-        let file = self.program.takes_file().then(|| temporary(&text)).transpose();
+        let file = self.program.takes_file().then(|| temporary(&[&text, b"(exit)\n"], "smt2")).transpose();
         let file = file.map_err(|source| Error::Io {
             what: "cannot write the query to a file (TMPDIR says where)".to_owned(),
             source,
@@ -124,12 +124,12 @@ impl OneShot {
 }
 
 /// A file that is removed with this, or by the watchdog. Some programs want the ending.
-pub(super) fn temporary(text: &[u8]) -> std::io::Result<NamedTempFile> {
+pub(super) fn temporary(pieces: &[&[u8]], ending: &str) -> std::io::Result<NamedTempFile> {
     watchdog::begin();
-    let mut file = tempfile::Builder::new().prefix("hyperplan-").suffix(".smt2").tempfile()?;
+    let suffix = format!(".{ending}");
+    let mut file = tempfile::Builder::new().prefix("hyperplan-").suffix(&suffix).tempfile()?;
     watchdog::watch_file(file.path());
-    file.write_all(text)?;
-    file.write_all(b"(exit)\n")?;
+    pieces.iter().try_for_each(|piece| file.write_all(piece))?;
     file.flush()?;
     Ok(file)
 }

@@ -1,16 +1,20 @@
 //! What a solver can do, found out by asking it small questions.
 
 use std::path::Path;
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 use std::time::Duration;
 
-use hyperplan_smt::{Terms, Value, read_value};
+use hyperplan_smt::{Terms, Value, read_script, read_value};
 use serde::Deserialize;
 
+use super::bits::Bits;
 use super::process::{Next, Process};
 use super::profile::{FILE, Profile};
+use super::program::Program;
 use super::reply::{self, Meaning, Reply};
 use crate::deadline::Deadline;
+use crate::propositional::Format;
+use crate::session::{Answer, Options, Quantifiers, Session as _};
 
 /// How long a solver may take for one small question.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -62,18 +66,54 @@ static QUESTIONS: LazyLock<Vec<Question>> = LazyLock::new(|| {
 });
 
 /// What the solver can do, in a fixed order.
-pub(super) fn abilities(profile: &Profile, program: &Path) -> Vec<(&'static str, Ability)> {
+pub(super) fn abilities(profile: &Arc<Profile>, program: &Path) -> Vec<(&'static str, Ability)> {
     let mut silent = 0;
     let ask = |question: &'static Question| {
         // One that says nothing at all is not asked a dozen times.
         if silent >= 2 {
             return (question.ability.as_str(), Ability::Unable);
         }
-        let (ability, in_time) = ask(profile, program, question);
+        let (ability, in_time) = match profile.format {
+            Some(format) => (ask_in_bits(profile, program, format, question), true),
+            None => ask(profile, program, question),
+        };
         silent += usize::from(!in_time);
         (question.ability.as_str(), ability)
     };
     QUESTIONS.iter().map(ask).collect()
+}
+
+/// Asks one question of a program that gets files of bits: about one answer, and values.
+fn ask_in_bits(profile: &Arc<Profile>, program: &Path, format: Format, question: &Question) -> Ability {
+    let quantified = !question.logic.starts_with("QF_");
+    let text = format!("(set-logic {})\n{}", question.logic, question.text);
+    let Ok(benchmark) = read_script(&text) else { return Ability::Unable };
+    let answers = question.expected.iter().filter(|said| matches!(said, Expected::Sat | Expected::Unsat));
+    if quantified && profile.quantifiers == Quantifiers::None || answers.count() > 1 {
+        return Ability::Unable;
+    }
+    let program = Program::at(program.to_owned(), profile, &Options::default());
+    let mut session = Bits::new(program, format, &Options::default());
+    let Ok(answer) = session.check(&benchmark.script, &[], &Deadline::after(PATIENCE)) else {
+        return Ability::Unable;
+    };
+    for expected in &question.expected {
+        let right = match expected {
+            Expected::Sat => answer == Answer::Sat,
+            Expected::Unsat => answer == Answer::Unsat,
+            Expected::Vector(number) => {
+                let values = session.values(&benchmark.script, &benchmark.symbols);
+                values.is_ok_and(|values| values == [Value::bv(*number, 4)])
+            }
+            Expected::Integer(_) | Expected::Core(_) => return Ability::Unable,
+        };
+        match answer {
+            Answer::Unknown(_) => return Ability::Unable,
+            _ if !right => return Ability::Wrong(format!("it said {answer:?}")),
+            _ => {}
+        }
+    }
+    Ability::Able
 }
 
 /// Asks one question; whether there was an answer in time.
@@ -86,9 +126,9 @@ fn ask(profile: &Profile, program: &Path, question: &Question) -> (Ability, bool
         text += "(set-option :produce-unsat-cores true)\n";
     }
     let logic = profile.logic.as_ref().unwrap_or(&question.logic);
-    text += &format!("(set-logic {logic})\n{}(exit)\n", question.text);
+    text += &format!("(set-logic {logic})\n{}", question.text);
     let file = match arguments.iter().any(|word| word.contains(FILE)) {
-        true => super::one_shot::temporary(text.as_bytes()).ok(),
+        true => super::one_shot::temporary(&[text.as_bytes(), b"(exit)\n"], "smt2").ok(),
         false => None,
     };
     let path = file.as_ref().map(|file| file.path().display().to_string());
@@ -97,7 +137,7 @@ fn ask(profile: &Profile, program: &Path, question: &Question) -> (Ability, bool
     let Ok(mut process) = Process::spawn(program, &arguments, None) else { return (Ability::Unable, true) };
     let deadline = Deadline::after(PATIENCE);
     if file.is_none() {
-        process.send(text.into_bytes(), &deadline);
+        process.send((text + "(exit)\n").into_bytes(), &deadline);
     }
     process.close_input();
     for expected in &question.expected {

@@ -116,6 +116,11 @@ impl Process {
         }
     }
 
+    /// Lines may be as long as other replies.
+    pub(super) fn take_long_lines(&mut self) {
+        self.splitter.take_long_lines();
+    }
+
     /// There is no more to send.
     pub(super) fn close_input(&mut self) {
         // The keeper takes an empty piece for the end.

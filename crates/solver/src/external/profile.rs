@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use crate::propositional::Format;
 use crate::session::Quantifiers;
 
 /// A solver that has a name here.
@@ -16,6 +17,8 @@ pub struct Profile {
     pub(crate) aliases: Vec<String>,
     /// The program: a name to be sought in `PATH`, or a path.
     pub(crate) program: String,
+    /// What it reads, if that is not SMT-LIB 2.
+    pub(crate) format: Option<Format>,
     /// Arguments of a dialogue.
     pub(crate) arguments: Vec<String>,
     /// Arguments of a process that answers one check: where no more are asked, there are quantifiers, or no dialogue is
@@ -117,6 +120,7 @@ impl Profile {
             name: name.to_owned(),
             aliases: Vec::new(),
             program: String::new(),
+            format: None,
             arguments: Vec::new(),
             one_shot: None,
             incremental: true,
@@ -137,6 +141,12 @@ impl Profile {
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// What it reads; `None` for SMT-LIB 2.
+    #[must_use]
+    pub fn format(&self) -> Option<Format> {
+        self.format
     }
 
     /// The environment variable that says where the program is.

@@ -40,7 +40,8 @@ impl Program {
         Ok(Program::at(path, profile, options))
     }
 
-    fn at(path: PathBuf, profile: &Arc<Profile>, options: &Options) -> Program {
+    /// A program of a kind that is known.
+    pub(super) fn at(path: PathBuf, profile: &Arc<Profile>, options: &Options) -> Program {
         let one_shot =
             !profile.incremental || !options.incremental || options.quantifiers() > Quantifiers::None;
         let one_shot = profile.one_shot.as_ref().filter(|_| one_shot);
@@ -161,7 +162,7 @@ mod tests {
             "buildin",
             "cadicle",
             "ls",
-            "minisat",
+            "glucose",
             "/usr/bin/z3x",
             "",
         ]

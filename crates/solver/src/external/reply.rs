@@ -32,6 +32,7 @@ pub(super) struct Splitter {
     current: Vec<u8>,
     replies: VecDeque<Reply>,
     errors: usize,
+    has_long_lines: bool,
 }
 
 /// A reply longer than this is given up: it becomes a line, which no command has for an answer.
@@ -43,12 +44,17 @@ impl Splitter {
     pub(super) fn feed(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             self.byte(byte);
-            let longest = if self.depth == 0 { LONGEST_LINE } else { LONGEST };
+            let longest = if self.depth == 0 && !self.has_long_lines { LONGEST_LINE } else { LONGEST };
             if self.current.len() > longest {
                 self.current.truncate(200);
                 self.emit_line();
             }
         }
+    }
+
+    /// Lines may be as long as other replies.
+    pub(super) fn take_long_lines(&mut self) {
+        self.has_long_lines = true;
     }
 
     fn byte(&mut self, byte: u8) {

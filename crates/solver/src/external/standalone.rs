@@ -44,7 +44,7 @@ impl Standalone {
 }
 
 impl Catalog {
-    /// The program of a solver; `None` for the embedded one.
+    /// The program of a solver; `None` for the embedded one, and for those that read no SMT-LIB.
     ///
     /// # Errors
     /// When it is not installed.
@@ -67,6 +67,9 @@ impl Catalog {
         };
         let unknown = || Error::Unsupported { what: format!("no solver {} is known", spec.name()) };
         let profile = profile.ok_or_else(unknown)?;
+        if profile.format.is_some() {
+            return Ok(None);
+        }
         let program = match spec {
             Spec::Program(line, _) => Program::of_kind(line, profile, &Options::default())?.path,
             _ => Program::of_profile(profile, &Options::default())?.path,

@@ -71,8 +71,11 @@ impl Version {
     }
 }
 
-/// The version number in what the program says, if it answers in time.
+/// The version number in what the program says, on either stream, if it answers in time. Without arguments it is not asked.
 pub(super) fn ask(program: &Path, arguments: &[String]) -> Option<String> {
+    if arguments.is_empty() {
+        return None;
+    }
     let mut process = Process::spawn(program, arguments, None).ok()?;
     process.close_input();
     let deadline = Deadline::after(PATIENCE);
@@ -82,12 +85,13 @@ pub(super) fn ask(program: &Path, arguments: &[String]) -> Option<String> {
             return found.map(str::to_owned);
         }
     }
-    None
+    process.kill();
+    process.last_errors().split_whitespace().find_map(number).map(str::to_owned)
 }
 
 /// A word that looks like a version: digits with a dot.
 fn number(word: &str) -> Option<&str> {
-    let word = word.trim_matches(|c: char| !c.is_ascii_alphanumeric()).trim_start_matches('v');
+    let word = word.trim_matches(|c: char| !c.is_ascii_alphanumeric()).trim_start_matches(['v', '.']);
     let fits = word.starts_with(|c: char| c.is_ascii_digit()) && word.contains('.');
     fits.then_some(word)
 }

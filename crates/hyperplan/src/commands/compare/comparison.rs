@@ -109,7 +109,8 @@ impl Comparison {
         let runs = plan(&instances, &self.solvers, &ways);
         if runs.is_empty() {
             return Err(Failure::input(
-                "there is nothing to run: the builtin solver reads no SMT-LIB files, and there is no other",
+                "there is nothing to run: the builtin solver reads no SMT-LIB files, SAT and QBF solvers neither, \
+                 and there is no other",
             ));
         }
         left_out(asked, &instances, &self.solvers, out);
@@ -154,9 +155,11 @@ pub(super) fn read(file: &Path, asked: &Asked) -> Result<(Asked, Vec<Listed>)> {
 /// Says what of the request comes to nothing.
 fn left_out(asked: &Asked, instances: &[Arc<Instance>], solvers: &[Arc<Candidate>], out: &Output) {
     let is_query = |instance: &Arc<Instance>| matches!(instance.kind, Kind::Query(_));
-    let embedded = asked.solver.is_some() && solvers.iter().any(|solver| solver.standalone.is_none());
-    if embedded && instances.iter().any(is_query) {
-        out.remark("note: the builtin solver reads no SMT-LIB files, and is left out there");
+    let no_readers = solvers.iter().filter(|solver| asked.solver.is_some() && solver.standalone.is_none());
+    let no_readers: Vec<&str> = no_readers.map(|solver| solver.name.as_str()).collect();
+    if !no_readers.is_empty() && instances.iter().any(is_query) {
+        let names = no_readers.join(", ");
+        out.remark(format_args!("note: no SMT-LIB files are read by {names}: left out there"));
     }
     if !asked.set.is_empty() && instances.iter().all(is_query) {
         out.remark("note: --set is for problem files, of which there are none");

@@ -25,7 +25,15 @@ fn configured(catalog: &Catalog, name: &str) -> Profile {
 fn the_table_is_good() {
     let catalog = Catalog::known();
     let names: Vec<&str> = catalog.profiles().iter().map(|profile| profile.name()).collect();
-    assert_eq!(names, ["z3", "cvc5", "yices", "bitwuzla"]);
+    let smt = ["z3", "cvc5", "yices", "bitwuzla"];
+    let qbf = ["depqbf", "caqe", "qute", "rareqs"];
+    let sat = ["kissat", "cryptominisat", "minisat", "picosat"];
+    assert_eq!(names, [smt, qbf, sat].concat());
+    // Those that get files of bits answer once, and are told which file.
+    for profile in catalog.profiles().iter().filter(|profile| profile.format.is_some()) {
+        let file = |arguments: &Vec<String>| arguments.iter().any(|argument| argument == FILE);
+        assert!(!profile.incremental && profile.one_shot.as_ref().is_some_and(file), "{}", profile.name);
+    }
     let z3 = catalog.profile("z3").expect("it is there");
     assert_eq!((z3.variable().as_str(), z3.origin.as_ref()), ("HYPERPLAN_Z3", None));
     assert_eq!(
@@ -68,6 +76,21 @@ fn old_and_new_versions_side_by_side() {
 }
 
 #[test]
+fn what_a_program_reads() {
+    let catalog = with(
+        "[[solver]]\nname = \"q\"\nprogram = \"q\"\nformat = \"qcir\"\none-shot = [\"{file}\"]\n\
+         [[solver]]\nname = \"depqbf-6\"\nlike = \"depqbf\"\none-shot = [\"{file}\"]\n\
+         [[solver]]\nname = \"smt\"\nlike = \"q\"\nformat = \"smt2\"\n",
+    );
+    let of = |name| (configured(&catalog, name).format(), configured(&catalog, name).incremental);
+    assert_eq!(of("q"), (Some(Format::Qcir), false));
+    assert_eq!(of("depqbf-6"), (Some(Format::Qdimacs), false));
+    assert_eq!(of("smt"), (None, false));
+    let wrong = error("[[solver]]\nname = \"x\"\nprogram = \"x\"\nformat = \"tptp\"\n");
+    assert!(wrong.starts_with("etc/hyperplan.toml:4: ") && wrong.contains("qdimacs"), "{wrong}");
+}
+
+#[test]
 fn later_files_come_first() {
     let mut catalog = with("[[solver]]\nname = \"mine\"\nprogram = \"a\"\nseed = \":seed\"\n");
     catalog
@@ -89,7 +112,8 @@ fn errors_have_a_place_and_advice() {
     );
     assert_eq!(
         error("[[solver]]\nname = \"x\"\nlike = \"z4\"\n"),
-        "etc/hyperplan.toml:3: there is no solver z4 to be like; there are z3, cvc5, yices, bitwuzla"
+        "etc/hyperplan.toml:3: there is no solver z4 to be like; there are z3, cvc5, yices, bitwuzla, depqbf, \
+         caqe, qute, rareqs, kissat, cryptominisat, minisat, picosat"
     );
     assert_eq!(
         error("[[solver]]\nname = \"x\"\nprogram = \"x\"\n[[solver]]\nname = \"x\"\nprogram = \"y\"\n"),

@@ -42,7 +42,8 @@ impl Team<'_> {
         add(args.encoding.states.is_none(), "states", "bitvec");
         if builtin && number > 3 {
             for spec in Configured::new(self.out).catalog()?.installed() {
-                add(!spec.is_embedded(), "solver", spec.name());
+                let reads_smt = spec.profile().is_none_or(|profile| profile.format().is_none());
+                add(!spec.is_embedded() && reads_smt, "solver", spec.name());
             }
         }
         add(quantifiers, "quantifiers", "expand");

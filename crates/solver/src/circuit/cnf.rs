@@ -8,21 +8,17 @@
 
 use hyperplan_smt::{Op, Script, Sort, Term, Terms, Value, View};
 
-use super::backend::Lit;
 use super::bits::Gates;
 use super::budget::{Budget, Halt};
+use super::{BOTH, Gate, Lit, NEGATIVE, POSITIVE, Sink};
 use crate::error::Error;
-
-const POSITIVE: u8 = 1;
-const NEGATIVE: u8 = 2;
-const BOTH: u8 = 3;
 
 /// How many clauses are added between two looks at the budget: a few milliseconds.
 const STRIDE: usize = 1 << 12;
 
 /// What of an arena has been turned into clauses.
-pub(super) struct Cnf {
-    pub(super) gates: Gates,
+pub(crate) struct Cnf<S> {
+    pub(crate) gates: Gates<S>,
     /// Per node: the literal of a Boolean.
     literals: Vec<Option<Lit>>,
     /// Per node: the directions whose clauses were added.
@@ -39,10 +35,10 @@ pub(super) struct Cnf {
     look: usize,
 }
 
-impl Cnf {
-    pub(super) fn new(gates: Gates) -> Cnf {
+impl<S: Sink> Cnf<S> {
+    pub(crate) fn new(sink: S) -> Cnf<S> {
         Cnf {
-            gates,
+            gates: Gates::new(sink),
             literals: Vec::new(),
             done: Vec::new(),
             starts: Vec::new(),
@@ -55,7 +51,7 @@ impl Cnf {
     }
 
     /// Takes an assertion, a disjunction; [`Cnf::finish`] adds what clauses are missing.
-    pub(super) fn assert(&mut self, script: &Script, literals: &[Term]) {
+    pub(crate) fn assert(&mut self, script: &Script, literals: &[Term]) {
         let terms = &script.terms;
         self.grow(terms);
         if let &[only] = literals {
@@ -66,19 +62,19 @@ impl Cnf {
     }
 
     /// The literal of a Boolean term that will be assumed to be true; [`Cnf::finish`] adds its clauses.
-    pub(super) fn assumption(&mut self, script: &Script, t: Term) -> Lit {
+    pub(crate) fn assumption(&mut self, script: &Script, t: Term) -> Lit {
         self.grow(&script.terms);
         self.literal(&script.terms, t, POSITIVE)
     }
 
     /// The literal of a declared Boolean symbol, if it has occurred.
-    pub(super) fn known_literal(&self, symbol: Term) -> Option<Lit> {
+    pub(crate) fn known_literal(&self, symbol: Term) -> Option<Lit> {
         let literal = (*self.literals.get(symbol.index())?)?;
         Some(if symbol.is_negated() { !literal } else { literal })
     }
 
     /// The bits of a declared bit-vector symbol, if it has occurred.
-    pub(super) fn known_bits(&self, symbol: Term, width: u32) -> Option<&[Lit]> {
+    pub(crate) fn known_bits(&self, symbol: Term, width: u32) -> Option<&[Lit]> {
         let start = (*self.starts.get(symbol.index())?)? as usize;
         Some(&self.bits[start..start + width as usize])
     }
@@ -104,7 +100,7 @@ impl Cnf {
         for t in literals {
             clause.push(self.literal(terms, t, POSITIVE));
         }
-        self.gates.sat.clause(&clause);
+        self.gates.sink.clause(&clause);
         self.clause = clause;
     }
 
@@ -122,7 +118,7 @@ impl Cnf {
             }
         };
         let (literal, needed) = if t.is_negated() { (!literal, flip(polarity)) } else { (literal, polarity) };
-        if needed & !self.done[t.index()] != 0 && !terms.is_symbol(t) {
+        if needed & !self.done[t.index()] != 0 && !matches!(terms.op(t), Op::Symbol | Op::Bound) {
             self.pending.push((t.positive(), needed));
         }
         literal
@@ -130,7 +126,7 @@ impl Cnf {
 
     /// Adds the clauses of everything asserted and assumed, and of what they need. Where it halts for want of time
     /// or memory, it can be called again.
-    pub(super) fn finish(&mut self, terms: &Terms, budget: &Budget) -> Result<(), Halt> {
+    pub(crate) fn finish(&mut self, terms: &Terms, budget: &Budget) -> Result<(), Halt> {
         loop {
             self.afford(budget)?;
             if let Some((t, needed)) = self.pending.pop() {
@@ -148,13 +144,13 @@ impl Cnf {
 
     /// Looks at the budget now and then.
     fn afford(&mut self, budget: &Budget) -> Result<(), Halt> {
-        if self.gates.sat.clauses() < self.look {
+        if self.gates.sink.size() < self.look {
             return Ok(());
         }
         if budget.spent() {
             return Err(Halt::Spent);
         }
-        self.look = self.gates.sat.clauses() + STRIDE;
+        self.look = self.gates.sink.size() + STRIDE;
         Ok(())
     }
 
@@ -166,18 +162,12 @@ impl Cnf {
             View::App(Op::And, conjuncts) => self.conjunction(terms, v, conjuncts, directions),
             View::App(Op::Eq, &[a, b]) if terms.sort(a) == Sort::Bool => {
                 let (a, b) = (self.literal(terms, a, BOTH), self.literal(terms, b, BOTH));
-                self.directed(v, directions, &[&[!a, b], &[a, !b]], &[&[a, b], &[!a, !b]]);
+                self.gates.sink.define(v, Gate::Iff(a, b), directions);
             }
             View::App(Op::Ite, &[c, a, b]) => {
                 let c = self.literal(terms, c, BOTH);
                 let (a, b) = (self.literal(terms, a, directions), self.literal(terms, b, directions));
-                // The last clause of each is implied; it helps propagation.
-                self.directed(
-                    v,
-                    directions,
-                    &[&[!c, a], &[c, b], &[a, b]],
-                    &[&[!c, !a], &[c, !b], &[!a, !b]],
-                );
+                self.gates.sink.define(v, Gate::Mux(c, a, b), directions);
             }
             View::App(op @ (Op::Eq | Op::BvUlt | Op::BvSlt), &[a, b]) => {
                 let bits =
@@ -190,43 +180,46 @@ impl Cnf {
                     Op::Eq => self.gates.equal(&a, &b),
                     _ => self.gates.less(&a, &b, op == Op::BvSlt),
                 };
-                self.directed(v, directions, &[&[g]], &[&[!g]]);
+                self.gates.sink.define(v, Gate::And(&[g]), directions);
             }
-            View::Bound(..) | View::Forall(..) => return Err(unsupported("quantifiers").into()),
-            _ => return Err(unsupported("integers and reals").into()),
+            View::Forall(bound, body) if S::QUANTIFIERS => {
+                self.quantified(terms, v, (bound, body), directions, budget)?;
+            }
+            View::Forall(..) => return Err(S::unsupported("quantifiers").into()),
+            _ => return Err(S::unsupported("integers and reals").into()),
         }
         Ok(())
     }
 
-    fn conjunction(&mut self, terms: &Terms, v: Lit, conjuncts: &[Term], directions: u8) {
-        let mut clause = std::mem::take(&mut self.clause);
-        clause.clear();
-        for &t in conjuncts {
-            let literal = self.literal(terms, t, directions);
-            if directions & POSITIVE != 0 {
-                self.gates.sat.clause(&[!v, literal]);
-            }
-            clause.push(!literal);
+    /// A quantifier, which the prefix has: what is left of it is its body, for those values of the variables that are some. The
+    /// bits of an enumeration may be those of none.
+    fn quantified(
+        &mut self,
+        terms: &Terms,
+        v: Lit,
+        (bound, body): (&[Term], Term),
+        directions: u8,
+        budget: &Budget,
+    ) -> Result<(), Halt> {
+        let mut against = vec![!self.literal(terms, body, directions)];
+        for &variable in bound {
+            let Sort::Enum(enumeration) = terms.sort(variable) else { continue };
+            let bits = self.vector(terms, variable, budget)?;
+            let beyond = self.beyond(terms.constructors(enumeration), &bits);
+            against.push(!beyond);
         }
-        if directions & NEGATIVE != 0 {
-            clause.push(v);
-            self.gates.sat.clause(&clause);
-        }
-        self.clause = clause;
+        self.gates.sink.define(!v, Gate::And(&against), flip(directions));
+        Ok(())
     }
 
-    /// `v` implies the first clauses, not `v` the second: those whose direction is needed.
-    fn directed(&mut self, v: Lit, directions: u8, positive: &[&[Lit]], negative: &[&[Lit]]) {
-        let mut clause = std::mem::take(&mut self.clause);
-        for (direction, condition, bodies) in [(POSITIVE, !v, positive), (NEGATIVE, v, negative)] {
-            for body in bodies.iter().filter(|_| directions & direction != 0) {
-                clause.clear();
-                clause.push(condition);
-                clause.extend_from_slice(body);
-                self.gates.sat.clause(&clause);
-            }
+    fn conjunction(&mut self, terms: &Terms, v: Lit, conjuncts: &[Term], directions: u8) {
+        let mut literals = std::mem::take(&mut self.clause);
+        literals.clear();
+        for &t in conjuncts {
+            literals.push(self.literal(terms, t, directions));
         }
-        self.clause = clause;
+        self.gates.sink.define(v, Gate::And(&literals), directions);
+        self.clause = literals;
     }
 
     /// The bits of a bit-vector term, after those of everything that it is built from.
@@ -245,7 +238,7 @@ impl Cnf {
                         stack.push(child)
                     }
                     Sort::BitVec(_) | Sort::Enum(_) | Sort::Bool => {}
-                    Sort::Int | Sort::Real => return Err(unsupported("integers and reals").into()),
+                    Sort::Int | Sort::Real => return Err(S::unsupported("integers and reals").into()),
                 }
             }
             if stack.len() == before {
@@ -266,11 +259,16 @@ impl Cnf {
     fn symbol(&mut self, terms: &Terms, t: Term, width: u32) -> Vec<Lit> {
         let bits: Vec<Lit> = (0..width).map(|_| self.gates.fresh()).collect();
         if let Sort::Enum(enumeration) = terms.sort(t) {
-            let last = self.number(u128::from(terms.constructors(enumeration) - 1), width);
-            let beyond = self.gates.less(&last, &bits, false);
-            self.gates.sat.clause(&[!beyond]);
+            let beyond = self.beyond(terms.constructors(enumeration), &bits);
+            self.gates.sink.clause(&[!beyond]);
         }
         bits
+    }
+
+    /// Whether bits are those of no constructor.
+    fn beyond(&mut self, constructors: u32, bits: &[Lit]) -> Lit {
+        let last = self.number(u128::from(constructors - 1), bits.len() as u32);
+        self.gates.less(&last, bits, false)
     }
 
     fn bits_of(&self, terms: &Terms, t: Term) -> Vec<Lit> {
@@ -281,13 +279,14 @@ impl Cnf {
     fn circuit(&mut self, terms: &Terms, t: Term) -> Result<Vec<Lit>, Error> {
         let width = width(terms, t);
         if width == 0 {
-            return Err(unsupported("integers and reals"));
+            return Err(S::unsupported("integers and reals"));
         }
         let bits = match terms.view(t) {
             View::Const(Value::Bv { bits, .. }) => self.number(bits, width),
             View::Const(Value::Enum(_, position)) => self.number(u128::from(position), width),
             View::Symbol(..) => self.symbol(terms, t, width),
-            View::Bound(..) | View::Forall(..) => return Err(unsupported("quantifiers")),
+            View::Bound(..) if S::QUANTIFIERS => (0..width).map(|_| self.gates.fresh()).collect(),
+            View::Bound(..) | View::Forall(..) => return Err(S::unsupported("quantifiers")),
             View::Extend(op, a, by) => {
                 let mut bits = self.bits_of(terms, a);
                 let fill = match (op, bits.last()) {
@@ -312,17 +311,17 @@ impl Cnf {
                 match op {
                     Op::BvAdd => self.gates.add(&a, &b, self.gates.constant(false)),
                     Op::BvMul => self.gates.multiply(&a, &b),
-                    _ => return Err(unsupported(op.name())),
+                    _ => return Err(S::unsupported(op.name())),
                 }
             }
-            View::Const(_) | View::App(..) => return Err(unsupported("an operator")),
+            View::Const(_) | View::App(..) => return Err(S::unsupported("an operator")),
         };
         Ok(bits)
     }
 }
 
 /// How many bits stand for a term that is neither Boolean nor a number: a constructor's position is one.
-pub(super) fn width(terms: &Terms, t: Term) -> u32 {
+pub(crate) fn width(terms: &Terms, t: Term) -> u32 {
     match terms.sort(t) {
         Sort::BitVec(width) => width,
         Sort::Enum(enumeration) => {
@@ -333,11 +332,6 @@ pub(super) fn width(terms: &Terms, t: Term) -> u32 {
 }
 
 /// The polarity under a complement.
-fn flip(polarity: u8) -> u8 {
+pub(super) fn flip(polarity: u8) -> u8 {
     (polarity & POSITIVE) << 1 | (polarity & NEGATIVE) >> 1
-}
-
-fn unsupported(what: &str) -> Error {
-    let what = format!("the builtin solver cannot handle {what}: use z3, cvc5 or yices");
-    Error::Unsupported { what }
 }

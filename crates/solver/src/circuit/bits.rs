@@ -1,32 +1,30 @@
 //! Gates: literals with constants folded, and the circuits of bit-vector operations on them.
 //! Bits are in order of weight, the lowest first.
 
-use super::backend::Lit;
-use super::worker::Worker;
-use crate::session::QuerySize;
+use super::{BOTH, Gate, Lit, Sink};
 
 /// What all SAT solvers take: some double the numbers.
 const MOST_VARIABLES: i32 = i32::MAX / 2;
 
-/// Makes literals and clauses.
-pub(super) struct Gates {
-    pub(super) sat: Worker,
+/// Makes literals, and says what they are.
+pub(crate) struct Gates<S> {
+    /// Who is told.
+    pub(crate) sink: S,
     /// How many variables there are.
     variables: i32,
     /// A literal that is true.
     top: Lit,
 }
 
-impl Gates {
-    pub(super) fn new(mut sat: Worker) -> Gates {
-        let top = Lit::new(1);
-        sat.clause(&[top]);
-        Gates { sat, variables: 1, top }
+impl<S: Sink> Gates<S> {
+    pub(crate) fn new(mut sink: S) -> Gates<S> {
+        sink.clause(&[Lit::TOP]);
+        Gates { sink, variables: 1, top: Lit::TOP }
     }
 
-    /// What the SAT solver was given.
-    pub(super) fn size(&self) -> QuerySize {
-        QuerySize { clauses: self.sat.clauses(), variables: self.variables as usize, ..QuerySize::default() }
+    /// How many variables there are, from 1 on.
+    pub(crate) fn variables(&self) -> usize {
+        self.variables as usize
     }
 
     pub(super) fn constant(&self, value: bool) -> Lit {
@@ -43,6 +41,13 @@ impl Gates {
         Lit::new(self.variables)
     }
 
+    /// The literal of a gate.
+    fn gate(&mut self, gate: Gate<'_>) -> Lit {
+        let literal = self.fresh();
+        self.sink.define(literal, gate, BOTH);
+        literal
+    }
+
     pub(super) fn and(&mut self, a: Lit, b: Lit) -> Lit {
         match (self.value(a), self.value(b)) {
             (Some(false), _) | (_, Some(false)) => return self.constant(false),
@@ -52,11 +57,7 @@ impl Gates {
             _ if a == !b => return self.constant(false),
             _ => {}
         }
-        let g = self.fresh();
-        self.sat.clause(&[!g, a]);
-        self.sat.clause(&[!g, b]);
-        self.sat.clause(&[g, !a, !b]);
-        g
+        self.gate(Gate::And(&[a, b]))
     }
 
     fn xor(&mut self, a: Lit, b: Lit) -> Lit {
@@ -67,12 +68,7 @@ impl Gates {
             _ if a == !b => return self.constant(true),
             _ => {}
         }
-        let g = self.fresh();
-        self.sat.clause(&[!g, a, b]);
-        self.sat.clause(&[!g, !a, !b]);
-        self.sat.clause(&[g, !a, b]);
-        self.sat.clause(&[g, a, !b]);
-        g
+        !self.gate(Gate::Iff(a, b))
     }
 
     fn mux(&mut self, c: Lit, a: Lit, b: Lit) -> Lit {
@@ -87,14 +83,7 @@ impl Gates {
             let (then, other) = (self.and(c, a), self.and(!c, b));
             return !self.and(!then, !other);
         }
-        let g = self.fresh();
-        self.sat.clause(&[!c, !a, g]);
-        self.sat.clause(&[!c, a, !g]);
-        self.sat.clause(&[c, !b, g]);
-        self.sat.clause(&[c, b, !g]);
-        self.sat.clause(&[!a, !b, g]);
-        self.sat.clause(&[a, b, !g]);
-        g
+        self.gate(Gate::Mux(c, a, b))
     }
 
     /// Whether at least two of three are true.
@@ -108,12 +97,7 @@ impl Gates {
                 None => {}
             }
         }
-        let g = self.fresh();
-        for (x, y) in [(a, b), (a, c), (b, c)] {
-            self.sat.clause(&[!x, !y, g]);
-            self.sat.clause(&[x, y, !g]);
-        }
-        g
+        self.gate(Gate::Majority(a, b, c))
     }
 
     /// The sum of two and a carry, modulo 2^width.

@@ -5,7 +5,7 @@ use crate::error::{Error, Unknown};
 
 /// The memory of this process must not pass a limit.
 #[derive(Clone, Debug)]
-pub(super) struct Memory {
+pub(crate) struct Memory {
     mib: u64,
     /// Most bytes of the process.
     most: u64,
@@ -16,7 +16,7 @@ impl Memory {
     ///
     /// # Errors
     /// Where the system does not tell how much memory is in use.
-    pub(super) fn growing_by(mib: u64) -> Result<Memory, Error> {
+    pub(crate) fn growing_by(mib: u64) -> Result<Memory, Error> {
         let Some(used) = used() else {
             let what = "this system does not tell how much memory is in use, so that the builtin solver cannot \
                         limit its own: leave out the limit, or use another solver";
@@ -38,25 +38,25 @@ fn used() -> Option<u64> {
 
 /// The limits of one check.
 #[derive(Clone, Debug)]
-pub(super) struct Budget {
+pub(crate) struct Budget {
     deadline: Deadline,
     memory: Option<Memory>,
-    /// Of the SAT solver; see [`Backend::solve`](super::backend::Backend::solve).
-    pub(super) effort: Option<u64>,
+    /// Of the SAT solver; see `Backend::solve`.
+    pub(crate) effort: Option<u64>,
 }
 
 impl Budget {
-    pub(super) fn new(deadline: &Deadline, memory: Option<&Memory>, effort: Option<u64>) -> Budget {
+    pub(crate) fn new(deadline: &Deadline, memory: Option<&Memory>, effort: Option<u64>) -> Budget {
         Budget { deadline: deadline.clone(), memory: memory.cloned(), effort }
     }
 
     /// Whether it is time to stop.
-    pub(super) fn spent(&self) -> bool {
+    pub(crate) fn spent(&self) -> bool {
         self.deadline.passed() || self.memory.as_ref().is_some_and(Memory::spent)
     }
 
     /// Why it was time to stop.
-    pub(super) fn reason(&self) -> Unknown {
+    pub(crate) fn reason(&self) -> Unknown {
         match &self.memory {
             Some(memory) if !self.deadline.passed() => Unknown::MemoryLimit { mib: memory.mib },
             _ => self.deadline.reason(),
@@ -66,7 +66,7 @@ impl Budget {
 
 /// Why there is no answer to a check.
 #[derive(Debug)]
-pub(super) enum Halt {
+pub(crate) enum Halt {
     /// Time or memory is spent; the next check may go on.
     Spent,
     /// The effort is spent, and the next check goes on from there.
