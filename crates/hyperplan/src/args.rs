@@ -322,6 +322,17 @@ pub(crate) enum Status {
     Unknown,
 }
 
+/// How much is left out of a benchmark.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Pruning {
+    /// Nothing but states that no path begins in, at the start
+    None,
+    /// States that cannot be reached by then
+    Light,
+    /// States through which the objective cannot be met any more, too
+    Full,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct Emit {
     /// The problem file (.hp)
@@ -371,7 +382,11 @@ pub(crate) struct Emit {
     /// No comments that say what follows
     #[arg(long)]
     pub(crate) no_comments: bool,
-    /// Every state that can be reached at a time, whether it can matter then or not: larger, and harder
+    /// What says which states of a time are in the benchmark: the goal too, the steps until then only, or nothing; the
+    /// less, the larger and the harder it is; several are a file each [default: full; families: light]
+    #[arg(long, value_enum, value_name = "HOW,...", value_delimiter = ',', conflicts_with = "no_pruning")]
+    pub(crate) pruning: Vec<Pruning>,
+    /// The same as `--pruning light`
     #[arg(long)]
     pub(crate) no_pruning: bool,
     /// Seconds for the whole command
@@ -379,11 +394,11 @@ pub(crate) struct Emit {
     pub(crate) timeout: Option<f64>,
 }
 
-/// A family of benchmarks on random maps.
+/// A family of benchmarks, most of them on maps.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Families")]
 pub(crate) struct Family {
-    /// Writes a family of benchmarks on random maps into a directory, in the layout of SMT-LIB submissions; goes on
+    /// Writes a family of benchmarks into a directory, most of them on random maps, in the layout of SMT-LIB submissions; goes on
     /// where an earlier run stopped, and adds to what is there
     #[arg(long = "family", value_name = "DIR", conflicts_with_all = ["file", "set", "objective", "output", "each", "status"])]
     pub(crate) folder: Option<PathBuf>,
@@ -396,8 +411,11 @@ pub(crate) struct Family {
     /// Seeds of the maps: numbers and ranges, both ends included
     #[arg(long, value_name = "N|LO..HI,...", value_parser = seeds, default_value = "0..1", conflicts_with = "file")]
     pub(crate) seeds: Seeds,
-    /// Objectives: sp, isr, ar, iso, cso
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_values_t = family::Objective::ALL,
+    /// Kinds of maps: random, rooms, maze, aisles
+    #[arg(long, value_name = "KIND,...", value_delimiter = ',', default_values_t = [family::Kind::Random], conflicts_with = "file")]
+    pub(crate) maps: Vec<family::Kind>,
+    /// Objectives: sp, isr, ar, iso, cso of the paper; isrs, ar2, ars, drift, cso3, alibi, locks, roads
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_values_t = family::Objective::PAPER,
         conflicts_with = "file")]
     pub(crate) objectives: Vec<family::Objective>,
     /// Horizons, by the least that is enough: below, least, above (by one), double
@@ -416,6 +434,21 @@ pub(crate) struct Family {
     /// How many instances are worked on at a time [default: one a core]
     #[arg(long, value_name = "N", conflicts_with = "file")]
     pub(crate) jobs: Option<std::num::NonZeroUsize>,
+    /// Then measures solvers on all of them, and chooses N by how hard they are, into DIR/selected
+    #[arg(long, value_name = "N", requires = "folder", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) select: Option<u32>,
+    /// The solvers that are measured [default: all that are installed]
+    #[arg(long, value_name = "SOLVER,...", requires = "select", conflicts_with = "measured")]
+    pub(crate) measure_by: Option<String>,
+    /// Seconds for each run [default: 60]; with --measured: only runs with this limit count
+    #[arg(long, value_name = "SECONDS", requires = "select")]
+    pub(crate) measure_limit: Option<f64>,
+    /// Makes and runs nothing, but chooses by these logs of `compare` among what is there
+    #[arg(long, value_name = "LOG,...", value_delimiter = ',', requires = "select")]
+    pub(crate) measured: Vec<PathBuf>,
+    /// What all solvers do within so many seconds is easy: at most a tenth is
+    #[arg(long, value_name = "SECONDS", default_value_t = 1.0, requires = "select")]
+    pub(crate) easy: f64,
 }
 
 /// Seeds, in the order in which they were named.
