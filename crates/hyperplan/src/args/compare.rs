@@ -166,7 +166,8 @@ pub(crate) struct Cluster {
     /// The name of that log: a scheduler that starts a share again must not have two programs write one.
     #[arg(long, hide = true, requires = "shard")]
     pub(crate) log: Option<String>,
-    /// Runs nothing, but puts other logs into that of --out and reports; of a plan, with what is missing
+    /// Runs nothing, but puts other logs into that of --out and reports; of a plan, with what is missing. Also results of
+    /// BenchExec (.xml), of SMT-COMP (.json) and of StarExec (.csv)
     #[arg(long, value_name = "LOG", num_args = 1.., conflicts_with = "files")]
     pub(crate) merge: Vec<PathBuf>,
     /// Prints each run on standard output too, as its line in the log: where nothing else comes back from a machine

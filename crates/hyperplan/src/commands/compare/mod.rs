@@ -15,6 +15,7 @@ use crate::files::reason;
 use crate::output::Output;
 use comparison::Comparison;
 use doing::{Doing, keys};
+use hyperplan_compare::foreign::beside;
 use hyperplan_compare::merge::{Settled, settled};
 use hyperplan_compare::plan::Run;
 use hyperplan_compare::report::write_all;
@@ -176,7 +177,7 @@ fn place(record: &Record) -> impl Ord + use<> {
 fn report(args: &args::Compare, records: &[Record], out: &mut Output) -> Result {
     let folder = args.out.as_path();
     let believed = args.certified.then(|| certified::certified(records, out));
-    let records = &together(believed.unwrap_or_else(|| records.to_vec()));
+    let records = &together(beside(believed.unwrap_or_else(|| records.to_vec())));
     let processors: BTreeSet<&str> = records.iter().filter_map(|run| run.processor.as_deref()).collect();
     if processors.len() > 1 {
         let all: Vec<&str> = processors.into_iter().collect();
