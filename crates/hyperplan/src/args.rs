@@ -169,7 +169,7 @@ pub(crate) enum Command {
     /// Find a strategy, verify it, print it
     Solve(Solve),
     /// Write SMT-LIB 2
-    Emit(Emit),
+    Emit(Box<Emit>),
     /// Say how much of each path matters, and why
     Horizon(Horizon),
     /// Say what is wrong with a problem file, or doubtful

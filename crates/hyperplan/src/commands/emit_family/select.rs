@@ -37,10 +37,10 @@ pub(super) fn check(args: &args::Emit) -> Result<()> {
             return Err(Failure::input(format_args!("{option} {seconds} is not a time to work in")));
         }
     }
-    for log in wanted.measured.iter().filter(|log| !log.is_file()) {
-        return Err(Failure::input(format_args!("--measured: there is no log {}", log.display())));
+    match wanted.measured.iter().find(|log| !log.is_file()) {
+        Some(log) => Err(Failure::input(format_args!("--measured: there is no log {}", log.display()))),
+        None => Ok(()),
     }
-    Ok(())
 }
 
 /// Measures what was not measured yet, chooses, and writes what was chosen.
