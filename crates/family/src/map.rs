@@ -21,7 +21,7 @@ const ATTEMPTS: u32 = 200;
 ///
 /// 1. Numbers are drawn from PCG32 with the seed, on stream `1000 * size + density`, and 1,000,000 more for each kind
 ///    before the map's in [`Kind::ALL`].
-/// 2. Walls are built, see [`crate::walls`]. Of the `n` cells without one, numbered from the bottom left, row by row,
+/// 2. Walls are built, see the module `walls`. Of the `n` cells without one, numbered from the bottom left, row by row,
 ///    `round(n * density / 100)` become obstacles (halves are rounded up): the first of a Fisher-Yates shuffle, which for
 ///    `i = 0, 1, ...` swaps the cell at `i` with the one at `i + below(n - i)`. In a maze none do: there the density says
 ///    how many of the walls between two corridors are opened.
