@@ -2,7 +2,7 @@
 
 use crate::brute::{Brute, Path};
 use crate::model;
-use hyperplan_plan::{Config, Error, Fault, Limits, Outcome, Quantifiers, States, Verdict, solve};
+use hyperplan_plan::{Config, Error, Fault, Limits, Outcome, Pruning, Quantifiers, States, Verdict, solve};
 use hyperplan_problem::{NoFiles, Objective, Overrides, Problem, System, Value, read};
 use hyperplan_solver::{Deadline, Spec};
 use hyperplan_syntax::SourceMap;
@@ -48,7 +48,7 @@ impl Way {
     #[must_use]
     pub fn all(problem: &Problem, solver: &Spec, quantifiers: &[Quantifiers]) -> Vec<Way> {
         let usual = Limits::default();
-        let unpruned = Limits { prune: false, ..usual };
+        let unpruned = Limits { pruning: Pruning::Light, ..usual };
         let tight = Limits { layer_states: 40, pairs: 12, swept: 30, residuals: 8, chances: 0, ..usual };
         let mut ways = Vec::new();
         for &quantifiers in quantifiers {

@@ -1,6 +1,6 @@
 //! The cheapest way on weighted maps and graphs, against an explicit search that knows nothing of formulas.
 
-use hyperplan_plan::{Cheapest, Config, Limits, Quantifiers, States, Verdict, cheapest};
+use hyperplan_plan::{Cheapest, Config, Limits, Pruning, Quantifiers, States, Verdict, cheapest};
 use hyperplan_problem::{Overrides, Problem, read};
 use hyperplan_solver::{Deadline, Spec};
 use hyperplan_syntax::SourceMap;
@@ -144,7 +144,7 @@ fn compare(seed: u64, (text, file): (&str, &str), ways: &Ways, value: impl Fn(i6
     let problem = lowered(text, file);
     let objective = &problem.objectives[0];
     let expected = ways.least().map(value);
-    let unpruned = Limits { prune: false, ..Limits::default() };
+    let unpruned = Limits { pruning: Pruning::Light, ..Limits::default() };
     let all = [
         (Quantifiers::Auto, None, Limits::default()),
         (Quantifiers::Cegis, Some(States::Onehot), unpruned),

@@ -206,7 +206,11 @@ fn brute(problem: &Problem) -> Option<Brute<'_>> {
 fn way(seed: u64) -> Config {
     let usual = Limits::default();
     let (quantifiers, states, limits) = match seed % 8 {
-        0 => (Quantifiers::Cegis, Some(States::Onehot), Limits { prune: false, ..usual }),
+        0 => (
+            Quantifiers::Cegis,
+            Some(States::Onehot),
+            Limits { pruning: hyperplan_plan::Pruning::Light, ..usual },
+        ),
         1 => (Quantifiers::Auto, Some(States::Bitvec), usual),
         2 => (Quantifiers::Expand, Some(States::Onehot), usual),
         3 => (Quantifiers::Auto, None, Limits { residuals: 8, layer_states: 40, pairs: 12, ..usual }),

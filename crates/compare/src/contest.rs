@@ -289,19 +289,37 @@ fn disputed(runs: &[&Record]) -> bool {
 }
 
 fn instance(record: &Record) -> Row<'_> {
-    let set = &record.set;
-    let words: Vec<&str> = [&record.instance].into_iter().chain(set).map(String::as_str).collect();
     Row {
         family: &record.family,
         name: &record.instance,
-        set,
+        set: &record.set,
         sha256: &record.sha256,
-        label: one_line(&words.join(" ")).into_owned(),
+        label: String::new(),
     }
+}
+
+/// The folder that all absolute paths among some names have in common, with its `/`; nothing where one is not absolute.
+/// What is on the way to it says nothing, and would fill a table.
+fn common<'n>(names: impl IntoIterator<Item = &'n str>) -> &'n str {
+    let folder = |name: &'n str| name.rsplit_once('/').map_or("", |(folder, _)| &name[..=folder.len()]);
+    let mut names = names.into_iter();
+    let mut common = names.next().map_or("", folder);
+    for name in names {
+        while !name.starts_with(common) {
+            common = folder(common.trim_end_matches('/'));
+        }
+    }
+    if common.starts_with('/') { common } else { "" }
 }
 
 /// Tells instances of one name apart.
 fn label_instances(instances: &mut [Row<'_>]) {
+    let folder = common(instances.iter().map(|instance| instance.name)).len();
+    for instance in &mut *instances {
+        let words: Vec<&str> =
+            [&instance.name[folder..]].into_iter().chain(instance.set.iter().map(String::as_str)).collect();
+        instance.label = one_line(&words.join(" ")).into_owned();
+    }
     let mut labels: BTreeMap<String, usize> = BTreeMap::new();
     for instance in &*instances {
         *labels.entry(instance.label.clone()).or_default() += 1;
@@ -336,5 +354,21 @@ fn label_contestants(contestants: &mut [Contestant<'_>]) {
         ];
         let parts: Vec<&str> = parts.into_iter().flatten().collect();
         who.label = one_line(&parts.join(" ")).into_owned();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::common;
+
+    #[test]
+    fn absolute_paths_are_shown_from_their_common_folder_on() {
+        assert_eq!(common(["/a/b/c.smt2", "/a/b/d.smt2"]), "/a/b/");
+        assert_eq!(common(["/a/b/c.smt2", "/a/bc/d.smt2"]), "/a/");
+        assert_eq!(common(["/a/b/c.smt2", "/b/d.smt2"]), "/");
+        assert_eq!(common(["/a/b/c.hp#o"]), "/a/b/");
+        assert_eq!(common(["/a/b.smt2", "b.smt2"]), "");
+        assert_eq!(common(["a/b.smt2", "a/c.smt2"]), "");
+        assert_eq!(common([]), "");
     }
 }

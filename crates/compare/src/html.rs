@@ -3,7 +3,6 @@
 
 use std::collections::BTreeSet;
 use std::io;
-use std::path::Path;
 
 use askama::Template;
 use serde::Serialize;
@@ -24,13 +23,15 @@ struct Page<'a> {
     facts: String,
     verdict: String,
     findings: &'a [Finding],
-    links: Links<'a>,
+    links: &'a Links<'a>,
     scores: Grid,
     notes: Vec<String>,
     cactus: String,
     scatter: String,
     names: Vec<String>,
     pair: (usize, usize),
+    divisions: Vec<Grid>,
+    difficulty: Grid,
     families: Vec<Grid>,
     instances: Grid,
     contestants: Grid,
@@ -87,15 +88,14 @@ struct ContestantData<'a> {
     words: Vec<String>,
 }
 
-/// Writes the page for a folder. `log` leads from there to the log's, where the records' queries are.
+/// Writes the page, with the tables of divisions and by difficulty.
 pub(crate) fn page(
     contest: &Contest<'_>,
     judgement: &Judgement,
     scores: &Scores,
-    folder: &Path,
-    log: &str,
+    (divisions, difficulty): (&[Sheet], &Sheet),
+    links: &Links<'_>,
 ) -> io::Result<String> {
-    let links = Links::new(folder, log);
     let order = scores.order();
     let pair = (order.first().copied().unwrap_or(0), order.get(1).copied().unwrap_or(0));
     let sheets = table::sheets(contest);
@@ -112,13 +112,19 @@ pub(crate) fn page(
         scatter: if order.len() < 2 { String::new() } else { plot::scatter(contest, pair.0, pair.1) },
         names: contest.contestants.iter().map(|contestant| contestant.label.clone()).collect(),
         pair,
+        divisions: (0..).zip(divisions).map(|(i, sheet)| division(i, sheet)).collect(),
+        difficulty: scores_grid(difficulty, "difficulty", &difficulty.caption),
         families: (0..).zip(families).map(|(i, sheet)| family(i, sheet)).collect(),
-        instances: instances(contest, &order, &links),
+        instances: instances(contest, &order, links),
         contestants: contestants(contest),
         links,
         data: data(contest)?,
     };
     page.render().map_err(io::Error::other)
+}
+
+fn division(number: usize, sheet: &Sheet) -> Grid {
+    scores_grid(sheet, &format!("division-{number}"), &sheet.caption)
 }
 
 fn family(number: usize, sheet: &Sheet) -> Grid {

@@ -10,7 +10,10 @@
 pub mod benchexec;
 mod cases;
 pub mod contest;
+pub mod difficulty;
+pub mod division;
 mod folders;
+pub mod foreign;
 mod heard;
 mod html;
 mod judge;

@@ -63,7 +63,7 @@ pub struct Limit {
 }
 
 /// One finished run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Record {
     /// The file, and for a problem file the objective: `specs/rooms.hp#fastest`.
     pub instance: String,

@@ -7,9 +7,12 @@ use serde::Serialize;
 
 use crate::Record;
 use crate::contest::Contest;
+use crate::difficulty;
+use crate::division::{self, Division, divisions};
 use crate::html;
 use crate::judge::{Judgement, judge_contest};
 use crate::latex;
+use crate::links::Links;
 use crate::plot;
 use crate::score::{Scores, scores};
 use crate::table;
@@ -19,10 +22,12 @@ use crate::table;
 struct Outcome<'a> {
     judgement: &'a Judgement,
     scores: &'a Scores,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    divisions: &'a [Division],
 }
 
 /// Writes all reports into a folder, which is made if need be, and returns what was written: `report.html`, `runs.csv`,
-/// `runs.json`, `scores.json`, `table.md`, `table.tex`, `instances.md`, `instances.tex`, `cactus.svg`, and `scatter-A-B.svg` for each two of the best contestants.
+/// `runs.json`, `scores.json`, `table.md`, `table.tex`, `difficulty.md`, `divisions.md`, `instances.md`, `instances.tex`, `cactus.svg`, and `scatter-A-B.svg` for each two of the best contestants.
 /// The folder is that of the log, as far as links to queries are concerned; links to instances are made where their files
 /// are found from the current folder.
 pub fn write_all(records: &[Record], dir: &Path) -> io::Result<Vec<PathBuf>> {
@@ -35,21 +40,36 @@ pub fn write_all_from(records: &[Record], dir: &Path, log: &str) -> io::Result<V
     let contest = Contest::new(records);
     let judgement = judge_contest(&contest);
     let scores = scores(&contest, |_| true);
+    let divisions = divisions(&contest);
+    let by_division: Vec<table::Sheet> = divisions.iter().map(division::sheet).collect();
+    let difficulty = difficulty::sheet(&contest);
     let sheets = table::sheets(&contest);
     let instances = table::instances(&contest, &scores);
     let mut csv = Vec::new();
     table::csv(records, &mut csv)?;
     let mut files = vec![
-        ("report.html".to_owned(), html::page(&contest, &judgement, &scores, dir, log)?.into_bytes()),
+        (
+            "report.html".to_owned(),
+            html::page(&contest, &judgement, &scores, (&by_division, &difficulty), &Links::new(dir, log))?
+                .into_bytes(),
+        ),
         ("runs.csv".to_owned(), csv),
         ("runs.json".to_owned(), json(&records)?),
-        ("scores.json".to_owned(), json(&Outcome { judgement: &judgement, scores: &scores })?),
+        (
+            "scores.json".to_owned(),
+            json(&Outcome { judgement: &judgement, scores: &scores, divisions: &divisions })?,
+        ),
+        ("difficulty.md".to_owned(), table::markdown(&difficulty).into_bytes()),
         ("instances.md".to_owned(), table::markdown(&instances).into_bytes()),
         ("instances.tex".to_owned(), latex(std::slice::from_ref(&instances)).into_bytes()),
         ("table.md".to_owned(), markdown(&sheets).into_bytes()),
         ("table.tex".to_owned(), latex(&sheets).into_bytes()),
         ("cactus.svg".to_owned(), plot::cactus(&contest, &scores).into_bytes()),
     ];
+    // Without a division of the competition there is nothing to say.
+    if !by_division.is_empty() {
+        files.push(("divisions.md".to_owned(), headed(&by_division).into_bytes()));
+    }
     for (a, b) in pairs(&scores.order()) {
         let names = [a, b].map(|c| slug(&contest.contestants[c].label));
         let mut name = format!("scatter-{}-{}.svg", names[0], names[1]);
@@ -100,6 +120,12 @@ fn json(value: &impl Serialize) -> io::Result<Vec<u8>> {
     let mut text = serde_json::to_vec_pretty(value)?;
     text.push(b'\n');
     Ok(text)
+}
+
+/// Tables below their captions.
+fn headed(sheets: &[table::Sheet]) -> String {
+    let tables = sheets.iter().map(|sheet| format!("### {}\n\n{}", sheet.caption, table::markdown(sheet)));
+    tables.collect::<Vec<_>>().join("\n")
 }
 
 /// The first table stands for everything; the others are headed by their families.

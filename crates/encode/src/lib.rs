@@ -29,7 +29,7 @@ mod writing;
 pub use encoder::{Among, Encoder};
 pub use hyperplan_problem::answer::States;
 pub use hyperplan_relevance::{
-    Belief, Case, Error, Goal, Instance, Known, Limits, Narrowing, Relevant, Stop,
+    Belief, Case, Error, Goal, Instance, Known, Limits, Narrowing, Pruning, Relevant, Stop,
 };
 pub use hyperplan_space::Graphs;
 pub use names::Copies;

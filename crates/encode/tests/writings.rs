@@ -1,12 +1,15 @@
 //! Every way of writing states against brute force: terms are evaluated under all models there are.
 
-use hyperplan_encode::{Encoder, Env, Error, Goal, Known, Limits, Narrowing, Query, Relevant, States};
+use hyperplan_encode::{
+    Encoder, Env, Error, Goal, Known, Limits, Narrowing, Pruning, Query, Relevant, States,
+};
 use hyperplan_problem::{PathId, Problem, Trace};
 use hyperplan_smt::{Model, Script, Sort, Term, Value, check_model};
 use hyperplan_tiny::{formula, holds, paths, problem, system};
 use proptest::prelude::*;
 
 const ALL: [States; 5] = [States::Onehot, States::Enum, States::Bitvec, States::Int, States::Real];
+const PRUNING: [Pruning; 3] = [Pruning::Full, Pruning::Light, Pruning::None];
 const P: PathId = PathId(0);
 const Q: PathId = PathId(1);
 
@@ -17,8 +20,8 @@ fn objective(system: &str, prefix: &str, steps: usize, formula: &str) -> Problem
     problem(&format!("{system} objective o within {steps} {{ {prefix} {formula} }}"))
 }
 
-fn encoder(problem: &Problem, states: States, prune: bool) -> Encoder<'_> {
-    let limits = Limits { prune, ..Limits::default() };
+fn encoder(problem: &Problem, states: States, pruning: Pruning) -> Encoder<'_> {
+    let limits = Limits { pruning, ..Limits::default() };
     Encoder::new(problem, &problem.objectives[0], Some(states), limits, &|| false).expect("it is small")
 }
 
@@ -126,7 +129,7 @@ proptest! {
         let problem = objective(&system, "exists p. forall q.", 2, &formula);
         let all = [P, Q].map(|path| paths(&problem.systems.raw[0], path, 2));
         for states in ALL {
-            let encoder = encoder(&problem, states, true);
+            let encoder = encoder(&problem, states, Pruning::Full);
             let goal = Goal::new(&encoder.objective.formula, true);
             for (p, q) in all[0].iter().zip(all[1].iter().rev()).take(20) {
                 let known = [p, q].map(|trace| encoder.writer.known(trace));
@@ -148,7 +151,7 @@ proptest! {
         prop_assume!(!all[0].is_empty());
         let (first, counterexample) = (&all[0][pick % all[0].len()], &all[1][pick / 7 % all[1].len()]);
         for states in ALL {
-            let encoder = encoder(&problem, states, true);
+            let encoder = encoder(&problem, states, Pruning::Full);
             let against = Goal::new(&encoder.objective.formula, false);
             let known = |trace| encoder.writer.known(trace);
             let before = [known(first), known(counterexample)];
@@ -181,8 +184,8 @@ proptest! {
     fn declared_paths_are_those_that_meet_their_goal(system in system(), formula in formula(&["p"])) {
         let problem = objective(&system, "exists p.", 1, &formula);
         let expected = expected(&problem, 1, |p| satisfied(&problem, &[p]));
-        for (states, prune) in ALL.into_iter().flat_map(|states| [(states, true), (states, false)]) {
-            let encoder = encoder(&problem, states, prune);
+        for (states, pruning) in ALL.into_iter().flat_map(|states| PRUNING.map(|pruning| (states, pruning))) {
+            let encoder = encoder(&problem, states, pruning);
             let goal = Goal::new(&encoder.objective.formula, true);
             let relevant = encoder.writer.relevant(&[P], &goal, Narrowing::default()).expect("it is small");
             prop_assert!(!relevant.is_hopeless() || expected.is_empty());
@@ -190,7 +193,7 @@ proptest! {
             let env = vec![Some(query.paths.declare(&mut query.script, P, &goal).expect("it is small"))];
             query.demand(&env, &goal);
             if let Some(found) = described(&query, &env) {
-                prop_assert_eq!(&found, &expected, "{} {}", states, prune);
+                prop_assert_eq!(&found, &expected, "{} {:?}", states, pruning);
             }
         }
     }
@@ -202,12 +205,13 @@ proptest! {
         let others = paths(&problem.systems.raw[0], Q, 1);
         let expected = expected(&problem, 1, |p| others.iter().all(|q| satisfied(&problem, &[p, q])));
         for states in ALL {
-            for (against, prune) in [(Against::Sweep, true), (Against::Cases, true), (Against::Cases, false)] {
-                let encoder = encoder(&problem, states, prune);
+            let ways = PRUNING.map(|pruning| (Against::Cases, pruning));
+            for (against, pruning) in ways.into_iter().chain([(Against::Sweep, Pruning::Full)]) {
+                let encoder = encoder(&problem, states, pruning);
                 let query = winning(&encoder, against).expect("it is small");
                 let found = query.and_then(|(query, env)| described(&query, &env));
                 if let Some(found) = found {
-                    prop_assert_eq!(&found, &expected, "{} {:?} {}", states, against, prune);
+                    prop_assert_eq!(&found, &expected, "{} {:?} {:?}", states, against, pruning);
                 }
             }
         }

@@ -1,7 +1,8 @@
 //! Which instances there are.
 
-use crate::map::{Map, MapError, Parameters};
+use crate::map::{Map, MapError};
 use crate::objective::Objective;
+use crate::parameters::{Kind, Parameters};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -61,16 +62,37 @@ pub struct Case {
     pub map: Parameters,
 }
 
+impl Case {
+    /// Where its difficulty comes from: the objective, and the kind of map.
+    #[must_use]
+    pub fn source(&self) -> String {
+        match self.map.kind {
+            Kind::Random => self.objective.to_string(),
+            kind => format!("{}-{kind}", self.objective),
+        }
+    }
+
+    /// How large it is, as a folder is called.
+    #[must_use]
+    pub fn size(&self) -> String {
+        let size = self.map.size;
+        if self.objective.has_map() { format!("{size}x{size}") } else { size.to_string() }
+    }
+}
+
 impl fmt::Display for Case {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Parameters { size, density, seed } = self.map;
-        write!(f, "{}-{size}x{size}-d{density}-s{seed}", self.objective)
+        let Parameters { density, seed, .. } = self.map;
+        let density = if self.objective.has_map() { format!("-d{density}") } else { String::new() };
+        write!(f, "{}-{}{density}-s{seed}", self.source(), self.size())
     }
 }
 
 /// Sizes, densities, seeds, objectives and horizons, each combined with each.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Family {
+    /// Kinds of maps.
+    pub kinds: Vec<Kind>,
     /// Side lengths of maps.
     pub sizes: Vec<u32>,
     /// Shares of obstacles, in percent.
@@ -94,15 +116,24 @@ impl Family {
 
     fn maps(&self) -> impl Iterator<Item = Parameters> {
         self.sizes.iter().flat_map(move |&size| {
-            self.densities.iter().flat_map(move |&density| {
-                self.seeds.iter().map(move |&seed| Parameters { size, density, seed })
+            self.kinds.iter().flat_map(move |&kind| {
+                self.densities.iter().flat_map(move |&density| {
+                    self.seeds.iter().map(move |&seed| Parameters { kind, size, density, seed })
+                })
             })
         })
     }
 
-    /// All cases, small maps first.
+    /// All cases, small maps first. Of what is not about maps there is one for each size and seed.
     pub fn cases(&self) -> impl Iterator<Item = Case> {
-        self.maps().flat_map(|map| self.objectives.iter().map(move |&objective| Case { objective, map }))
+        self.maps().flat_map(move |map| {
+            let first = Some(&map.kind) == self.kinds.first() && Some(&map.density) == self.densities.first();
+            self.objectives.iter().filter_map(move |&objective| match objective.has_map() {
+                true => Some(Case { objective, map }),
+                false => first
+                    .then_some(Case { objective, map: Parameters { kind: Kind::Random, density: 0, ..map } }),
+            })
+        })
     }
 
     /// The horizons of a case, each number of steps once. Where no horizon is enough, the last one tried is all.
@@ -127,6 +158,7 @@ mod tests {
 
     fn family() -> Family {
         Family {
+            kinds: vec![Kind::Random],
             sizes: vec![4, 6],
             densities: vec![0, 10],
             seeds: vec![0, 1, 2],
@@ -143,9 +175,23 @@ mod tests {
     }
 
     #[test]
+    fn what_has_no_map_is_there_once() {
+        let kinds = vec![Kind::Rooms, Kind::Maze];
+        let family = Family { kinds, objectives: vec![Objective::Ar, Objective::Locks], ..family() };
+        let names: Vec<String> = family.cases().map(|case| case.to_string()).collect();
+        let locks: Vec<&String> = names.iter().filter(|name| name.starts_with("locks")).collect();
+        assert_eq!(locks.len(), 6);
+        assert_eq!(
+            [locks[0], &names[0], &names[29]],
+            ["locks-4-s0", "ar-rooms-4x4-d0-s0", "ar-maze-6x6-d10-s2"]
+        );
+    }
+
+    #[test]
     fn horizons_are_about_the_least() {
         let family = family();
-        let map = Map::random(Parameters { size: 6, density: 0, seed: 0 }).expect("there is room");
+        let map = Map::random(Parameters { kind: Kind::Random, size: 6, density: 0, seed: 0 })
+            .expect("there is room");
         let steps = |least| family.horizons(&map, Objective::Cso, least);
         assert_eq!(
             steps(Some(5)),

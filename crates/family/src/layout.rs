@@ -29,8 +29,7 @@ impl Layout {
     /// The path of a benchmark, with `/`, as submissions have it: folder of the track, logic, set, objective, size and name.
     #[must_use]
     pub fn benchmark(&self, folder: &str, logic: &str, case: &crate::Case, instance: &str) -> String {
-        let (objective, size) = (case.objective, case.map.size);
-        format!("{folder}/{logic}/{}/{objective}/{size}x{size}/{instance}.smt2", self.set)
+        format!("{folder}/{logic}/{}/{}/{}/{instance}.smt2", self.set, case.source(), case.size())
     }
 
     /// The path of a problem.
@@ -43,11 +42,14 @@ impl Layout {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Case, Objective, Parameters};
+    use crate::{Case, Kind, Objective, Parameters};
 
     #[test]
     fn paths_are_those_of_submissions() {
-        let case = Case { objective: Objective::Ar, map: Parameters { size: 8, density: 10, seed: 3 } };
+        let case = Case {
+            objective: Objective::Ar,
+            map: Parameters { kind: Kind::Random, size: 8, density: 10, seed: 3 },
+        };
         let layout = Layout::new("2026-02-28", "random-maps", "robot").expect("good names");
         assert_eq!(
             layout.benchmark("non-incremental", "QF_UF", &case, "one"),

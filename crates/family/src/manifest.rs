@@ -19,8 +19,8 @@ pub struct Manifest {
 
 /// The columns of the table: the names of an entry's fields, and the track.
 const COLUMNS: &str = "\
-    file,sha256,bytes,logic,status,certified,track,objective,size,density,seed,horizon,steps,\
-    states,quantifiers,problem";
+    file,sha256,bytes,logic,status,certified,track,objective,map,size,density,seed,horizon,steps,\
+    states,quantifiers,pruning,problem";
 
 impl Manifest {
     /// The manifest of a log: of several records of one instance the last counts. The order is that of the names, so
@@ -83,6 +83,7 @@ impl Manifest {
         for entry in &self.benchmarks {
             let mut fields = serde_json::to_value(entry).map_err(std::io::Error::from)?;
             fields["track"] = self.head.track.clone().into();
+            fields["map"] = entry.about.case.map.kind.to_string().into();
             table.write_record(COLUMNS.split(',').map(|column| match &fields[column] {
                 Value::String(text) => text.clone(),
                 number => number.to_string(),
@@ -95,11 +96,11 @@ impl Manifest {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{About, Case, Horizon, Objective, Parameters};
+    use crate::{About, Case, Horizon, Kind, Objective, Parameters};
 
     fn written(instance: &str, body: &str) -> Record {
         let text = |text: &str| text.to_owned();
-        let map = Parameters { size: 8, density: 10, seed: 3 };
+        let map = Parameters { kind: Kind::Random, size: 8, density: 10, seed: 3 };
         let about = About {
             instance: text(instance),
             case: Case { objective: Objective::Sp, map },
@@ -107,6 +108,7 @@ mod tests {
             steps: 7,
             states: text("onehot"),
             quantifiers: text("keep"),
+            pruning: text("light"),
         };
         Record::Written(Box::new(Entry {
             file: format!("{instance}.smt2"),
@@ -163,8 +165,8 @@ mod tests {
         let table = String::from_utf8(manifest.csv().expect("plain data")).expect("text");
         assert_eq!(
             table,
-            "file,sha256,bytes,logic,status,certified,track,objective,size,density,seed,horizon,steps,states,quantifiers,problem\n\
-             a.smt2,0,5,UF,sat,false,single,sp,8,10,3,least,7,onehot,keep,problems/a.hp\n"
+            "file,sha256,bytes,logic,status,certified,track,objective,map,size,density,seed,horizon,steps,states,quantifiers,pruning,problem\n\
+             a.smt2,0,5,UF,sat,false,single,sp,random,8,10,3,least,7,onehot,keep,light,problems/a.hp\n"
         );
         let json: serde_json::Value =
             serde_json::from_str(&manifest.json().expect("plain data")).expect("JSON");

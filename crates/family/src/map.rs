@@ -1,7 +1,8 @@
 //! Random maps.
 
+use crate::parameters::{Cell, Kind, Parameters, index};
 use crate::random::Random;
-use serde::{Deserialize, Serialize};
+use crate::walls::walls;
 use std::collections::VecDeque;
 use std::ops::RangeInclusive;
 
@@ -12,36 +13,18 @@ pub const MAX_DENSITY: u32 = 60;
 /// How often obstacles are laid out anew.
 const ATTEMPTS: u32 = 200;
 
-/// What a map is made from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub struct Parameters {
-    /// The length of a side, in cells.
-    pub size: u32,
-    /// The share of obstacles, in percent.
-    pub density: u32,
-    /// The seed.
-    pub seed: u64,
-}
-
-/// A cell: column and row, both from 0, the row from the bottom.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Cell {
-    /// The column.
-    pub x: u32,
-    /// The row.
-    pub y: u32,
-}
-
 /// A square map with obstacles, a start and a goal.
 ///
 /// As the random maps of the pathfinding benchmarks (Sturtevant, *Benchmarks for Grid-Based Pathfinding*, 2012; Stern
 /// et al., *Multi-Agent Pathfinding: Definitions, Variants, and Benchmarks*, 2019) it is a square in which a given share
 /// of cells, chosen uniformly, are obstacles. Exactly:
 ///
-/// 1. Numbers are drawn from PCG32 with the seed, on stream `1000 * size + density`.
-/// 2. Of the `n = size * size` cells, numbered from the bottom left, row by row, `round(n * density / 100)` become
-///    obstacles (halves are rounded up): the first of a Fisher-Yates shuffle, which for `i = 0, 1, ...` swaps the cell at
-///    `i` with the one at `i + below(n - i)`.
+/// 1. Numbers are drawn from PCG32 with the seed, on stream `1000 * size + density`, and 1,000,000 more for each kind
+///    before the map's in [`Kind::ALL`].
+/// 2. Walls are built, see the module `walls`. Of the `n` cells without one, numbered from the bottom left, row by row,
+///    `round(n * density / 100)` become obstacles (halves are rounded up): the first of a Fisher-Yates shuffle, which for
+///    `i = 0, 1, ...` swaps the cell at `i` with the one at `i + below(n - i)`. In a maze none do: there the density says
+///    how many of the walls between two corridors are opened.
 /// 3. The *room* is the largest set of free cells that are connected by moves up, down, left and right; of several, the
 ///    one with the lowest number.
 /// 4. The start is one cell of the room, `below(its cells)`, in the order of their numbers. The goal is one of those
@@ -69,8 +52,12 @@ pub enum MapError {
     #[error("obstacles are 0 to {MAX_DENSITY} percent of a map, not {0}")]
     Density(u32),
     /// No attempt had room for a path.
-    #[error("no map of {size} x {size} cells with {density} % obstacles and seed {seed} has room for a path")]
+    #[error(
+        "no map of {size} x {size} cells with {density} % obstacles and seed {seed} ({kind}) has room for a path"
+    )]
     NoRoom {
+        /// Where its walls are.
+        kind: Kind,
         /// The length of a side.
         size: u32,
         /// The share of obstacles.
@@ -103,10 +90,12 @@ impl Map {
     /// If they are out of bounds, or leave no room.
     pub fn random(parameters: Parameters) -> Result<Map, MapError> {
         parameters.check()?;
-        let Parameters { size, density, seed } = parameters;
-        let mut random = Random::new(seed, u64::from(size) * 1000 + u64::from(density));
+        let Parameters { size, density, seed, kind } = parameters;
+        let before = Kind::ALL.into_iter().filter(|&other| other < kind).count() as u64;
+        let stream = before * 1_000_000 + u64::from(size) * 1000 + u64::from(density);
+        let mut random = Random::new(seed, stream);
         let attempt = (0..ATTEMPTS).find_map(|_| attempt(parameters, &mut random));
-        attempt.ok_or(MapError::NoRoom { size, density, seed })
+        attempt.ok_or(MapError::NoRoom { size, density, seed, kind })
     }
 
     /// What the map was made from.
@@ -140,15 +129,18 @@ impl Map {
         cell.x >= size || cell.y >= size || self.obstacle[index(size, cell)]
     }
 
+    /// The least number of moves from one cell to each that can be reached, in the order of cells.
+    pub(crate) fn distances(&self, from: Cell) -> impl Iterator<Item = (Cell, u32)> {
+        let size = self.parameters.size;
+        let all = distances(size, &self.obstacle, index(size, from));
+        all.into_iter().enumerate().filter_map(move |(i, steps)| Some((cell(size, i), steps?)))
+    }
+
     /// The free cells next to one: left, right, below, above.
     pub fn neighbors(&self, cell: Cell) -> impl Iterator<Item = Cell> {
         let size = self.parameters.size;
         neighbors(size, cell).filter(|&next| !self.is_obstacle(next))
     }
-}
-
-fn index(size: u32, cell: Cell) -> usize {
-    (cell.y * size + cell.x) as usize
 }
 
 fn cell(size: u32, index: usize) -> Cell {
@@ -165,17 +157,15 @@ fn neighbors(size: u32, Cell { x, y }: Cell) -> impl Iterator<Item = Cell> {
 }
 
 fn attempt(parameters: Parameters, random: &mut Random) -> Option<Map> {
-    let Parameters { size, density, .. } = parameters;
-    let cells = size * size;
-    let obstacles = (cells * density + 50) / 100;
-    let mut order: Vec<usize> = (0..cells as usize).collect();
-    for i in 0..obstacles {
-        order.swap(i as usize, (i + random.below(cells - i)) as usize);
-    }
-    let mut obstacle = vec![false; cells as usize];
+    let Parameters { size, density, kind, .. } = parameters;
+    let mut obstacle = walls(parameters, random);
+    let mut order: Vec<usize> = (0..obstacle.len()).filter(|&i| !obstacle[i]).collect();
+    let free = u32::try_from(order.len()).ok()?;
+    let obstacles = if kind == Kind::Maze { 0 } else { (free * density + 50) / 100 };
+    random.shuffle(&mut order, obstacles);
     order[..obstacles as usize].iter().for_each(|&i| obstacle[i] = true);
     let room = largest_room(size, &obstacle);
-    if room.len() * 2 < (cells - obstacles) as usize {
+    if room.len() * 2 < (free - obstacles) as usize {
         return None;
     }
     let start = *random.choose(&room)?;
@@ -236,7 +226,7 @@ mod tests {
     use super::*;
 
     fn map(size: u32, density: u32, seed: u64) -> Map {
-        Map::random(Parameters { size, density, seed }).expect("there is room")
+        Map::random(Parameters { size, density, seed, kind: Kind::Random }).expect("there is room")
     }
 
     #[test]
@@ -262,6 +252,27 @@ mod tests {
     }
 
     #[test]
+    fn every_kind_of_map_has_a_way() {
+        for (kind, size, density) in [
+            (Kind::Rooms, 9, 0),
+            (Kind::Rooms, 16, 10),
+            (Kind::Maze, 9, 0),
+            (Kind::Maze, 16, 20),
+            (Kind::Aisles, 12, 5),
+        ] {
+            for seed in 0..10 {
+                let map = Map::random(Parameters { size, density, seed, kind }).expect("there is room");
+                assert!(map.distance >= (size / 2).div_ceil(2), "{kind} {size} {density} {seed}");
+                assert!(
+                    map.obstacle.iter().any(|&o| o)
+                        && !map.is_obstacle(map.start)
+                        && !map.is_obstacle(map.goal)
+                );
+            }
+        }
+    }
+
+    #[test]
     fn obstacles_are_anywhere() {
         let mut seen = [0_u32; 64];
         for seed in 0..400 {
@@ -273,11 +284,11 @@ mod tests {
 
     #[test]
     fn what_has_no_room_is_refused() {
-        let parameters = |size, density| Parameters { size, density, seed: 0 };
+        let parameters = |size, density| Parameters { size, density, seed: 0, kind: Kind::Random };
         assert_eq!(Map::random(parameters(2, 0)), Err(MapError::Size(2)));
         assert_eq!(Map::random(parameters(257, 0)), Err(MapError::Size(257)));
         assert_eq!(Map::random(parameters(8, 61)), Err(MapError::Density(61)));
         let crowded = Map::random(parameters(64, 60));
-        assert_eq!(crowded, Err(MapError::NoRoom { size: 64, density: 60, seed: 0 }));
+        assert_eq!(crowded, Err(MapError::NoRoom { size: 64, density: 60, seed: 0, kind: Kind::Random }));
     }
 }

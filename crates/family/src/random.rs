@@ -29,6 +29,14 @@ impl Random {
         }
     }
 
+    /// Puts some of the things first, each as likely as the others: the beginning of a Fisher-Yates shuffle.
+    pub(crate) fn shuffle<T>(&mut self, things: &mut [T], first: u32) {
+        let count = u32::try_from(things.len()).unwrap_or(u32::MAX);
+        for i in 0..first.min(count) {
+            things.swap(i as usize, (i + self.below(count - i)) as usize);
+        }
+    }
+
     /// One of some things.
     pub(crate) fn choose<'a, T>(&mut self, things: &'a [T]) -> Option<&'a T> {
         let count = u32::try_from(things.len()).unwrap_or(u32::MAX);

@@ -35,6 +35,14 @@ pub struct About {
     pub states: String,
     /// How quantifiers are decided.
     pub quantifiers: String,
+    /// How much is left out.
+    #[serde(default = "light")]
+    pub pruning: String,
+}
+
+/// What there was before there was a choice.
+fn light() -> String {
+    "light".to_owned()
 }
 
 /// A benchmark that was written.

@@ -3,18 +3,19 @@
 mod certify;
 mod compare;
 mod explain;
+mod families;
 mod verify;
 
 pub(crate) use certify::Certify;
 pub(crate) use compare::{Asked, Compare, Settings, Shard};
 pub(crate) use explain::Explain;
+pub(crate) use families::Family;
 pub(crate) use verify::Verify;
 
 use crate::foreign::Foreign;
 pub(crate) use crate::reading::{Others, Reading};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use hyperplan_family as family;
 use hyperplan_import::Known;
 use hyperplan_problem::Difference;
 use hyperplan_problem::answer::{Quantifiers, States, WitnessPath};
@@ -169,7 +170,7 @@ pub(crate) enum Command {
     /// Find a strategy, verify it, print it
     Solve(Solve),
     /// Write SMT-LIB 2
-    Emit(Emit),
+    Emit(Box<Emit>),
     /// Say how much of each path matters, and why
     Horizon(Horizon),
     /// Say what is wrong with a problem file, or doubtful
@@ -322,6 +323,17 @@ pub(crate) enum Status {
     Unknown,
 }
 
+/// How much is left out of a benchmark.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Pruning {
+    /// Nothing but states that no path begins in, at the start
+    None,
+    /// States that cannot be reached by then
+    Light,
+    /// States through which the objective cannot be met any more, too
+    Full,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct Emit {
     /// The problem file (.hp)
@@ -374,7 +386,11 @@ pub(crate) struct Emit {
     /// No comments that say what follows
     #[arg(long)]
     pub(crate) no_comments: bool,
-    /// Every state that can be reached at a time, whether it can matter then or not: larger, and harder
+    /// What says which states of a time are in the benchmark: the goal too, the steps until then only, or nothing; the
+    /// less, the larger and the harder it is; several are a file each [default: full; families: light]
+    #[arg(long, value_enum, value_name = "HOW,...", value_delimiter = ',', conflicts_with = "no_pruning")]
+    pub(crate) pruning: Vec<Pruning>,
+    /// The same as `--pruning light`
     #[arg(long)]
     pub(crate) no_pruning: bool,
     /// Seconds for the whole command
@@ -393,45 +409,6 @@ pub(crate) enum EmitFormat {
     Qdimacs,
     /// Clauses, with quantifiers expanded: DIMACS
     Dimacs,
-}
-
-/// A family of benchmarks on random maps.
-#[derive(Clone, Debug, Args)]
-#[command(next_help_heading = "Families")]
-pub(crate) struct Family {
-    /// Writes a family of benchmarks on random maps into a directory, in the layout of SMT-LIB submissions; goes on
-    /// where an earlier run stopped, and adds to what is there
-    #[arg(long = "family", value_name = "DIR", conflicts_with_all = ["file", "set", "objective", "output", "each", "status"])]
-    pub(crate) folder: Option<PathBuf>,
-    /// Cells along a side of the maps
-    #[arg(long, value_name = "N,...", value_delimiter = ',', default_values_t = [4, 6], conflicts_with = "file")]
-    pub(crate) sizes: Vec<u32>,
-    /// Obstacles, in percent of the cells
-    #[arg(long, value_name = "N,...", value_delimiter = ',', default_values_t = [10, 20], conflicts_with = "file")]
-    pub(crate) densities: Vec<u32>,
-    /// Seeds of the maps: numbers and ranges, both ends included
-    #[arg(long, value_name = "N|LO..HI,...", value_parser = seeds, default_value = "0..1", conflicts_with = "file")]
-    pub(crate) seeds: Seeds,
-    /// Objectives: sp, isr, ar, iso, cso
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_values_t = family::Objective::ALL,
-        conflicts_with = "file")]
-    pub(crate) objectives: Vec<family::Objective>,
-    /// Horizons, by the least that is enough: below, least, above (by one), double
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_values_t = family::Horizon::ALL,
-        conflicts_with = "file")]
-    pub(crate) horizons: Vec<family::Horizon>,
-    /// The name of the family
-    #[arg(long, value_name = "NAME", default_value = "random-maps", conflicts_with = "file")]
-    pub(crate) name: String,
-    /// Who submits it
-    #[arg(long, value_name = "NAME", default_value = "hyperplan", conflicts_with = "file")]
-    pub(crate) submitter: String,
-    /// Seconds to search for each least horizon and each status
-    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, conflicts_with = "file")]
-    pub(crate) limit: f64,
-    /// How many instances are worked on at a time [default: one a core]
-    #[arg(long, value_name = "N", conflicts_with = "file")]
-    pub(crate) jobs: Option<std::num::NonZeroUsize>,
 }
 
 /// Seeds, in the order in which they were named.

@@ -9,7 +9,7 @@ use crate::output::Output;
 use crate::pictures::Picture;
 use crate::signals;
 use chrono::{DateTime, NaiveDate, Utc};
-use hyperplan_plan::{Config, States, Status, Track};
+use hyperplan_plan::{Config, Pruning, States, Status, Track};
 use hyperplan_solver::{Deadline, Format, Spec};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -74,6 +74,29 @@ fn solvers(text: &str, configured: &Configured<'_>) -> Result<(Spec, Vec<Spec>)>
 /// What was asked for, as it is typed.
 pub(crate) fn states_name(states: Option<States>) -> String {
     states.map_or("auto", States::name).to_owned()
+}
+
+/// How much is left out of benchmarks.
+pub(crate) fn pruning(args: &args::Emit, usual: Pruning) -> Vec<Pruning> {
+    let named = args.pruning.iter().map(|pruning| match pruning {
+        args::Pruning::None => Pruning::None,
+        args::Pruning::Light => Pruning::Light,
+        args::Pruning::Full => Pruning::Full,
+    });
+    match args.pruning.is_empty() {
+        true if args.no_pruning => vec![Pruning::Light],
+        true => vec![usual],
+        false => named.collect(),
+    }
+}
+
+/// The name of that.
+pub(crate) fn pruning_name(pruning: Pruning) -> &'static str {
+    match pruning {
+        Pruning::None => "none",
+        Pruning::Light => "light",
+        Pruning::Full => "full",
+    }
 }
 
 pub(crate) fn track(typed: args::Track) -> Track {

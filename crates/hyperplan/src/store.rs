@@ -1,7 +1,7 @@
 //! The folder of a family: its log, and files that are there whole or not at all.
 
 use crate::failure::{Failure, Result};
-use crate::files::{cannot_write, write_bytes};
+use crate::files::{cannot_write, reason, write_bytes};
 use crate::proof::{DESCRIPTION, REFUTATION};
 use hyperplan_family::{Head, Log, Manifest, Record, sha256};
 use std::collections::BTreeSet;
@@ -71,6 +71,16 @@ impl Store {
             store.note(&Record::Head(head))?;
         }
         Ok(store)
+    }
+
+    /// What there is in the folder of a family, which stays as it is.
+    pub(crate) fn look(folder: &Path) -> Result<Manifest> {
+        let path = folder.join(LOG);
+        let cannot_read = |why: String| Failure::input(format_args!("cannot read {}: {why}", path.display()));
+        let text = fs::read_to_string(&path).map_err(|e| cannot_read(reason(&e)))?;
+        let past = Log::read(&text).map_err(|e| cannot_read(e.to_string()))?;
+        let head = past.head.ok_or_else(|| cannot_read("it has no family".to_owned()))?;
+        Ok(Manifest::new(head, &past.records).0)
     }
 
     /// The date of the family that a folder has, if any: a run that goes on a day later is of the same family.

@@ -209,8 +209,8 @@ fn what_a_problem_file_says_of_its_objectives() {
     fs::write(&file, &wrong).expect("ours");
     let run = comparison.run(&[text(&file), "--objective=sp", "--set=T=1,2,6", "--solver=builtin"]);
     assert_eq!(run.status, 5, "{}", run.stderr);
-    let found = format!("{}#sp T=1: against the known status", text(&file));
-    assert!(run.stdout.starts_with(&found), "{}", run.stdout);
+    // Of an absolute path what follows the folder that all have in common.
+    assert!(run.stdout.starts_with("rooms.hp#sp T=1: against the known status"), "{}", run.stdout);
     let expected: Vec<_> = comparison.records().iter().map(|record| record["expected"].clone()).collect();
     // 6 is what T is in the file.
     assert_eq!(expected, ["sat".into(), serde_json::Value::Null, "sat".into()]);

@@ -44,4 +44,4 @@ pub use reads::{in_state, only_path};
 pub use relevant::{Narrowing, Relevance, Relevant, leading, least};
 pub use residual::{FALSE, MAX_ATOMS, Now, Residual, Residuals, TRUE};
 pub use split::case;
-pub use task::{Arena, Error, Limits, Stop, Task};
+pub use task::{Arena, Error, Limits, Pruning, Stop, Task};

@@ -6,9 +6,9 @@ use crate::game::Game;
 use crate::goal::Goal;
 use crate::layers::Layers;
 use crate::reach::{self, Explored, Question};
-use crate::task::{Arena, Error};
+use crate::task::{Arena, Error, Pruning};
 use hyperplan_problem::{PathId, Quantifier};
-use hyperplan_space::Run;
+use hyperplan_space::{Run, StateIx};
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
@@ -64,7 +64,7 @@ pub fn leading(
 ) -> Result<Relevant, Error> {
     let nothing = vec![None; arena.graphs.len()];
     let mut search = Relevance { narrowing, ..Relevance::new(arena, nothing, Relevant::default()) };
-    if arena.task.limits.prune {
+    if arena.task.limits.prunes() {
         search.explore_block(block, goal)?;
     }
     for &path in block {
@@ -81,7 +81,7 @@ pub fn leading(
 pub fn least(arena: &Arena<'_>, goal: &Goal) -> Result<i64, Error> {
     let search = Relevance::new(arena, vec![None; arena.graphs.len()], Relevant::default());
     let nothing = Goal::nothing();
-    let goal = if arena.task.limits.prune { goal } else { &nothing };
+    let goal = if arena.task.limits.prunes() { goal } else { &nothing };
     let mut sum: i64 = 0;
     let Some(ceiling) = arena.ceilings.last() else { return Ok(0) };
     for (path, _) in &ceiling.weights {
@@ -134,10 +134,10 @@ impl<'e, 'a> Relevance<'e, 'a> {
         if let Some(known) = self.found.layers.get(&key) {
             return Ok(known.clone());
         }
-        let found = if self.arena.task.limits.prune {
-            self.explore(path, goal)?
-        } else {
-            self.alone(path, &Goal::nothing(), &self.fixed)?
+        let found = match self.arena.task.limits.pruning {
+            Pruning::Full => self.explore(path, goal)?,
+            Pruning::Light => self.alone(path, &Goal::nothing(), &self.fixed)?,
+            Pruning::None => self.unexplored(path)?,
         };
         Ok(self.keep(key, found))
     }
@@ -266,6 +266,31 @@ impl<'e, 'a> Relevance<'e, 'a> {
             ceiling: None,
             budget: self.arena.task.limits.layer_states,
         }
+    }
+
+    /// All states of a path's system at every time, but for those that it cannot begin in, and at each time those from
+    /// which it cannot go on.
+    fn unexplored(&self, path: PathId) -> Result<Explored<1>, Error> {
+        let mut found = self.alone(path, &Goal::nothing(), &self.fixed)?;
+        let [layers] = &mut found.layers;
+        let (task, graph) = (&self.arena.task, &self.arena.graphs[path]);
+        let known = self.fixed[usize::from(path)].is_some();
+        let mut count = 0_usize;
+        for (time, layer) in layers.at.iter_mut().enumerate().skip(1).filter(|_| !known) {
+            task.go_on()?;
+            layer.clear();
+            let states = (0..graph.len()).filter_map(|state| StateIx::try_from(state).ok());
+            let time = u32::try_from(time).unwrap_or(u32::MAX);
+            layer.extend(states.filter(|&state| task.lasts(graph, state, time)));
+            count += layer.len();
+            if count > task.limits.layer_states {
+                return Err(Error::TooLarge {
+                    what: format!("states of {} at all times", task.objective.paths[path].name),
+                    limit: task.limits.layer_states,
+                });
+            }
+        }
+        Ok(found)
     }
 
     fn alone(&self, path: PathId, goal: &Goal, fixed: &[Option<Run>]) -> Result<Explored<1>, Error> {

@@ -63,7 +63,7 @@ impl Piece {
     fn whole(arena: &Arena<'_>, block: &[PathId], goal: &Goal) -> Result<Piece, Error> {
         let relevance = Relevance::new(arena, vec![None; arena.graphs.len()], Relevant::default());
         let unpruned = Goal::nothing();
-        let goal = if arena.task.limits.prune { goal } else { &unpruned };
+        let goal = if arena.task.limits.prunes() { goal } else { &unpruned };
         let layers = |&path: &PathId| {
             let found = reach::layers(&relevance.question([path], goal, &relevance.fixed));
             found.map(|Explored { layers: [layers], .. }| layers)

@@ -8,7 +8,19 @@ use hyperplan_space::{Graph, LIVE, StateIx};
 use std::sync::Arc;
 use typed_index_collections::TiVec;
 
-/// Budgets, and whether to prune.
+/// What says which states can matter at a time. Answers are the same, which tests rely on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Pruning {
+    /// Nothing: all states of a system do at every time, but for the first, where paths begin.
+    None,
+    /// The steps: those states do that can be reached by then.
+    Light,
+    /// The goal too: those do through which it can still be met.
+    #[default]
+    Full,
+}
+
+/// Budgets, and how much to prune.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// Steps of any path.
@@ -29,9 +41,16 @@ pub struct Limits {
     pub cases: usize,
     /// States of a system that become the constructors of a datatype.
     pub constructors: usize,
-    /// Whether what a goal asks for says which states can matter. Without, all that can be reached do: answers are
-    /// the same, which tests rely on.
-    pub prune: bool,
+    /// What says which states can matter.
+    pub pruning: Pruning,
+}
+
+impl Limits {
+    /// Whether what a goal asks for says which states can matter.
+    #[must_use]
+    pub fn prunes(&self) -> bool {
+        self.pruning == Pruning::Full
+    }
 }
 
 impl Default for Limits {
@@ -46,7 +65,7 @@ impl Default for Limits {
             chances: usize::MAX,
             cases: 4096,
             constructors: 65_536,
-            prune: true,
+            pruning: Pruning::Full,
         }
     }
 }

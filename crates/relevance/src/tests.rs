@@ -7,7 +7,7 @@ use crate::layers::Layers;
 use crate::reach::Question;
 use crate::relevant::{Narrowing, Relevance, leading};
 use crate::split::case;
-use crate::task::{Arena, Limits, Task};
+use crate::task::{Arena, Limits, Pruning, Task};
 use hyperplan_problem::{PathId, Problem, Trace};
 use hyperplan_space::{Graph, Run};
 pub(crate) use hyperplan_tiny::problem;
@@ -99,6 +99,10 @@ fn layers(relevance: &mut Relevance<'_, '_>, path: PathId, goal: &Goal) -> Arc<L
     relevance.declare(path, goal).expect("it is small")
 }
 
+fn pruning() -> impl Strategy<Value = Pruning> {
+    prop_oneof![Just(Pruning::Full), Just(Pruning::Light), Just(Pruning::None)]
+}
+
 proptest! {
     // Some faults show in one of a thousand.
     #![proptest_config(ProptestConfig::with_cases(2000))]
@@ -170,13 +174,13 @@ proptest! {
         system in system(),
         formula in formula(&["p", "q"]),
         exists in any::<bool>(),
-        prune in any::<bool>(),
+        pruning in pruning(),
         budget in prop_oneof![Just(usize::MAX), 0..40usize],
     ) {
         let prefix = if exists { "exists p. forall q." } else { "forall p. exists q." };
         let problem = objective(&system, prefix, &formula);
         let mut arena = arena(&problem);
-        arena.task.limits.prune = prune;
+        arena.task.limits.pruning = pruning;
         let goal = Goal::new(&arena.task.objective.formula, exists);
         let (all, others) = (runs(&arena, P), runs(&arena, Q));
         prop_assume!(!others.is_empty());
@@ -219,11 +223,11 @@ proptest! {
         system in system(),
         formula in formula(&["p", "q"]),
         number in 1..7usize,
-        prune in any::<bool>(),
+        pruning in pruning(),
     ) {
         let problem = objective(&system, "exists p. forall q.", &formula);
         let mut arena = arena(&problem);
-        arena.task.limits.prune = prune;
+        arena.task.limits.pruning = pruning;
         let goal = Goal::new(&arena.task.objective.formula, true);
         let (all, others) = (runs(&arena, P), runs(&arena, Q));
         prop_assume!(!others.is_empty());
@@ -251,17 +255,20 @@ proptest! {
     fn pruning_only_takes_away(system in system(), formula in formula(&["p", "q"])) {
         let problem = objective(&system, "exists p. forall q.", &formula);
         let pruned = arena(&problem);
-        let mut all = pruned.clone();
-        all.task.limits.prune = false;
+        let [mut reached, mut all] = [pruned.clone(), pruned.clone()];
+        reached.task.limits.pruning = Pruning::Light;
+        all.task.limits.pruning = Pruning::None;
         let goal = Goal::new(&pruned.task.objective.formula, true);
-        let [few, many] = [&pruned, &all].map(|arena| {
+        let [few, some, many] = [&pruned, &reached, &all].map(|arena| {
             let found = leading(arena, &[P], &goal, Narrowing::default()).expect("it is small");
             layers(&mut Relevance::new(arena, vec![None, None], found), P, &goal)
         });
         for (time, states) in few.at.iter().enumerate() {
-            prop_assert!(states.iter().all(|&state| many.contains(time, state)));
+            prop_assert!(states.iter().all(|&state| some.contains(time, state)));
+            prop_assert!(some.at[time].iter().all(|&state| many.contains(time, state)));
         }
-        prop_assert!(runs(&all, P).iter().all(|(_, run)| within(run, &many)));
+        prop_assert_eq!(&some.at[0], &many.at[0]);
+        prop_assert!(runs(&all, P).iter().all(|(_, run)| within(run, &some)));
     }
 }
 

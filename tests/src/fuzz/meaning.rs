@@ -4,8 +4,8 @@ use super::choices;
 use super::problem::{formatted_alike, shown};
 use crate::whole::Whole;
 use hyperplan_plan::{
-    Budget as LintBudget, Config, EmitConfig, Fault, Limits, Lints, Quantifiers, States, Status, Track,
-    Verdict, emit, lint, lint_systems, solve,
+    Budget as LintBudget, Config, EmitConfig, Fault, Limits, Lints, Pruning, Quantifiers, States, Status,
+    Track, Verdict, emit, lint, lint_systems, solve,
 };
 use hyperplan_problem::{Objective, Problem, System};
 use hyperplan_smt::read_script;
@@ -24,7 +24,7 @@ const LIMITS: Limits = Limits {
     chances: 2_000,
     cases: 64,
     constructors: 300,
-    prune: true,
+    pruning: Pruning::Full,
 };
 
 /// The same for the checker.

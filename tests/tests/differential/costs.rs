@@ -2,7 +2,9 @@
 
 use super::{Answers, Tally, embedded, seeds, smallest};
 use hyperplan_certify::{check, with_bounds};
-use hyperplan_plan::{Cheapest, Config, Fault, Limits, Quantifiers, States, Value, Verdict, cheapest, prove};
+use hyperplan_plan::{
+    Cheapest, Config, Fault, Limits, Pruning, Quantifiers, States, Value, Verdict, cheapest, prove,
+};
 use hyperplan_problem::{self as problem, CostId, PathId, Target};
 use hyperplan_solver::{Deadline, Spec};
 use hyperplan_syntax::{SourceId, Span};
@@ -137,7 +139,7 @@ fn the_cheapest_strategy_is_what_brute_force_finds() {
         let text = problem.to_string();
         let typed = lowered(&text);
         let usual = Limits::default();
-        let unpruned = Limits { prune: false, ..usual };
+        let unpruned = Limits { pruning: Pruning::Light, ..usual };
         let tight = Limits { layer_states: 40, pairs: 12, swept: 30, residuals: 8, chances: 0, ..usual };
         let ways = [
             (Quantifiers::Auto, None, usual),

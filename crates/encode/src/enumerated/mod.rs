@@ -312,7 +312,7 @@ impl Writing for EnumeratedQuery<'_, '_> {
         beside: &[(PathId, Known)],
     ) -> Result<(), Error> {
         let path = &self.paths[path];
-        if !self.writer.arena.task.limits.prune {
+        if !self.writer.arena.task.limits.prunes() {
             return Ok(());
         }
         let runs = beside.iter().filter_map(|(other, known)| Some((*other, self.writer.run(*other, known)?)));

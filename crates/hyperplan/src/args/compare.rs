@@ -1,7 +1,7 @@
 //! What may be typed behind `compare`.
 
 use super::{Part, Reading, part, quantifiers, setting, states};
-use clap::{Args, Parser, ValueEnum};
+use clap::{Args, ValueEnum};
 use hyperplan_problem::answer::{Quantifiers, States};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -89,6 +89,56 @@ pub(crate) struct Asked {
     pub(crate) reading: Reading,
 }
 
+impl Compare {
+    /// What the command has where nothing else is said.
+    pub(crate) fn new(files: Vec<String>, solver: Option<String>, timeout: f64) -> Self {
+        let asked = Asked { files, solver, timeout, ..Asked::default() };
+        Compare {
+            asked,
+            jobs: 1,
+            pin: false,
+            out: PathBuf::new(),
+            certified: false,
+            queries: false,
+            benchexec: None,
+            cluster: Cluster {
+                plan: None,
+                shard: None,
+                log: None,
+                merge: Vec::new(),
+                echo: false,
+                engine: None,
+                tasks: None,
+                exclusive: false,
+                unshared: false,
+                submit: Vec::new(),
+            },
+        }
+    }
+}
+
+impl Default for Asked {
+    fn default() -> Self {
+        Asked {
+            files: Vec::new(),
+            skip_bad: false,
+            objective: vec!["all".to_owned()],
+            solver: None,
+            quantifiers: vec![Quantifiers::Auto],
+            states: vec![None],
+            set: Vec::new(),
+            seed: vec![0],
+            repeat: 1,
+            timeout: 60.0,
+            cpu: None,
+            memory: None,
+            no_verify: false,
+            cubes: 1,
+            reading: Reading { bound: None, semantics: None, dialect: None },
+        }
+    }
+}
+
 fn one() -> u16 {
     1
 }
@@ -96,12 +146,7 @@ fn one() -> u16 {
 impl Asked {
     /// Whether nothing was said of what is to be run.
     pub(crate) fn is_default(&self) -> bool {
-        #[derive(Parser)]
-        struct Nothing {
-            #[command(flatten)]
-            asked: Asked,
-        }
-        Nothing::try_parse_from([""]).is_ok_and(|nothing| nothing.asked == *self)
+        *self == Asked::default()
     }
 }
 
@@ -121,7 +166,8 @@ pub(crate) struct Cluster {
     /// The name of that log: a scheduler that starts a share again must not have two programs write one.
     #[arg(long, hide = true, requires = "shard")]
     pub(crate) log: Option<String>,
-    /// Runs nothing, but puts other logs into that of --out and reports; of a plan, with what is missing
+    /// Runs nothing, but puts other logs into that of --out and reports; of a plan, with what is missing. Also results of
+    /// BenchExec (.xml), of SMT-COMP (.json) and of StarExec (.csv)
     #[arg(long, value_name = "LOG", num_args = 1.., conflicts_with = "files")]
     pub(crate) merge: Vec<PathBuf>,
     /// Prints each run on standard output too, as its line in the log: where nothing else comes back from a machine
@@ -207,7 +253,18 @@ fn shard(text: &str) -> Result<Shard, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory as _;
+    use clap::{CommandFactory as _, Parser};
+
+    #[test]
+    fn what_is_not_said_is_what_the_parser_fills_in() {
+        #[derive(Parser)]
+        struct Nothing {
+            #[command(flatten)]
+            asked: Asked,
+        }
+        let nothing = Nothing::try_parse_from([""]).expect("nothing is required");
+        assert_eq!(nothing.asked, Asked::default());
+    }
 
     #[test]
     fn shares_are_read() {

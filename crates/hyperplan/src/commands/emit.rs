@@ -10,7 +10,7 @@ use crate::load::{self, Consts, Loaded};
 use crate::output::Output;
 use crate::proof::Made;
 use hyperplan_outlet::one_line;
-use hyperplan_plan::{EmitConfig, Emitted, Limits, Quantifiers, States, Status, emit};
+use hyperplan_plan::{EmitConfig, Emitted, Limits, Pruning, Quantifiers, States, Status, emit};
 use hyperplan_problem::{Objective, Problem, Type, display};
 use hyperplan_solver::{Deadline, Format};
 use std::path::{Path, PathBuf};
@@ -45,8 +45,9 @@ pub(crate) fn run(args: &args::Emit, file: &Path, out: &mut Output) -> Result {
         }
         let common = EmitConfig { remarks: remarks(&loaded, &consts), ..common.clone() };
         for objective in objectives {
-            for (quantifiers, states) in encodings(args) {
-                let config = EmitConfig { quantifiers, states, ..common.clone() };
+            for (quantifiers, states, pruning) in encodings(args) {
+                let limits = Limits { pruning, ..common.limits };
+                let config = EmitConfig { quantifiers, states, limits, ..common.clone() };
                 let mut emitted = match emit(&loaded.problem, objective, &config) {
                     Ok(emitted) => emitted,
                     Err(error) => {
@@ -115,7 +116,6 @@ pub(super) fn common(args: &args::Emit, date: &str, out: &Output) -> Result<Emit
         track: config::track(args.track),
         status: config::status(args.status),
         comments: !args.no_comments,
-        limits: Limits { prune: !args.no_pruning, ..Limits::default() },
         deadline: config::deadline(args.timeout, None)?,
         solver,
         ..EmitConfig::new(date)
@@ -127,10 +127,13 @@ pub(super) fn common(args: &args::Emit, date: &str, out: &Output) -> Result<Emit
 }
 
 /// The ways of writing that were asked for.
-fn encodings(args: &args::Emit) -> impl Iterator<Item = (Quantifiers, Option<States>)> {
-    args.quantifiers
-        .iter()
-        .flat_map(|&quantifiers| args.states.iter().map(move |&states| (quantifiers, states)))
+fn encodings(args: &args::Emit) -> impl Iterator<Item = (Quantifiers, Option<States>, Pruning)> {
+    let states = move |quantifiers| args.states.iter().map(move |&states| (quantifiers, states));
+    let written = args.quantifiers.iter().copied().flat_map(states);
+    written.flat_map(|(quantifiers, states)| {
+        let pruned = config::pruning(args, Pruning::Full).into_iter();
+        pruned.map(move |pruning| (quantifiers, states, pruning))
+    })
 }
 
 /// What the header says of the problem file.
@@ -181,6 +184,9 @@ impl Name<'_> {
         }
         if self.args.quantifiers.len() > 1 {
             name += &format!("-{}", config.quantifiers);
+        }
+        if self.args.pruning.len() > 1 {
+            name += &format!("-{}", config::pruning_name(config.limits.pruning));
         }
         name + "." + ending(config)
     }

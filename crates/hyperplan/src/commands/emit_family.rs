@@ -1,6 +1,7 @@
 //! `hyperplan emit --family`: benchmarks on random maps, with horizons about the least that is enough.
 
 mod case;
+mod select;
 
 use super::emit;
 use crate::args;
@@ -10,8 +11,8 @@ use crate::output::Output;
 use crate::store::Store;
 use case::One;
 use clap::ValueEnum as _;
-use hyperplan_family::{Case, Family, Head, Layout, Record};
-use hyperplan_plan::{EmitConfig, Limits, Quantifiers, States};
+use hyperplan_family::{Case, Family, Head, Layout, Manifest, Record};
+use hyperplan_plan::{EmitConfig, Pruning, Quantifiers, States};
 use hyperplan_solver::Deadline;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::Path;
@@ -19,10 +20,28 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::Duration;
 
-pub(crate) fn run(args: &args::Emit, out: &mut Output) -> Result {
+pub(crate) fn run(args: &args::Emit, verbose: bool, out: &mut Output) -> Result {
     let Some(folder) = &args.family.folder else {
         return Err(Failure::input("expected a problem file, or --family DIR"));
     };
+    if args.family.select.is_some() {
+        select::check(args)?;
+    }
+    let (manifest, status) = match args.family.measured.as_slice() {
+        [] => make(args, folder, out)?,
+        _ => (Store::look(folder)?, Exit::Good),
+    };
+    match args.family.select {
+        Some(count) if status == Exit::Good => {
+            let count = usize::try_from(count).unwrap_or(usize::MAX);
+            select::run(args, (folder, &manifest), count, verbose, out)
+        }
+        _ => Ok(status),
+    }
+}
+
+/// Makes the benchmarks that are not there yet.
+fn make(args: &args::Emit, folder: &Path, out: &mut Output) -> Result<(Manifest, Exit)> {
     let work = Work::new(args, folder, out)?;
     let head = Head {
         generator: format!("hyperplan {}", env!("CARGO_PKG_VERSION")),
@@ -52,9 +71,9 @@ pub(crate) fn run(args: &args::Emit, out: &mut Output) -> Result {
     ))?;
     if work.deadline.passed() {
         out.remark("note: not all was done; run it again to go on");
-        return Ok(Exit::Undecided);
+        return Ok((manifest, Exit::Undecided));
     }
-    Ok(Exit::Good)
+    Ok((manifest, Exit::Good))
 }
 
 /// What is to be done.
@@ -65,6 +84,7 @@ struct Work<'a> {
     date: String,
     states: Vec<Option<States>>,
     quantifiers: Vec<Quantifiers>,
+    pruning: Vec<Pruning>,
     /// How benchmarks are emitted, but for that.
     common: EmitConfig,
     certify: bool,
@@ -76,6 +96,7 @@ impl<'a> Work<'a> {
     fn new(args: &args::Emit, folder: &'a Path, out: &Output) -> Result<Self> {
         let wanted = &args.family;
         let family = Family {
+            kinds: once(&wanted.maps),
             sizes: once(&wanted.sizes),
             densities: once(&wanted.densities),
             seeds: once(&wanted.seeds.0),
@@ -105,10 +126,22 @@ impl<'a> Work<'a> {
         }
         let common = emit::common(args, &date, out)?;
         // What cannot matter is left in: a solver has to find that out, which makes the harder benchmarks.
-        let common = EmitConfig { limits: Limits { prune: false, ..common.limits }, ..common };
+        let pruning = once(&config::pruning(args, Pruning::Light));
         let deadline = common.deadline.clone();
         let certify = args.certify;
-        Ok(Work { folder, family, layout, date, states, quantifiers, common, certify, limit, deadline })
+        Ok(Work {
+            folder,
+            family,
+            layout,
+            date,
+            states,
+            quantifiers,
+            pruning,
+            common,
+            certify,
+            limit,
+            deadline,
+        })
     }
 
     /// Works through all cases, several at a time; what comes of them is noted here, in the order in which it comes.

@@ -27,7 +27,7 @@ pub(crate) fn run(cli: &Cli, out: &mut Output) -> Result {
         Command::Solve(args) => solve::run(args, verbose, cli.global.quiet, out),
         Command::Emit(args) => match &args.file {
             Some(file) => emit::run(args, file, out),
-            None => emit_family::run(args, out),
+            None => emit_family::run(args, verbose, out),
         },
         Command::Horizon(args) => horizon::run(args, out),
         Command::Check(args) => check::run(args, verbose, out),

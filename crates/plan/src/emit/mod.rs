@@ -13,7 +13,7 @@ use crate::oracle::{Oracle, Stop, solver_for};
 use crate::prepare::{decided, is_existential};
 use crate::solve::solve;
 use dialect::Dialect;
-use hyperplan_encode::{Encoder, Goal, Limits, Narrowing, States};
+use hyperplan_encode::{Encoder, Goal, Limits, Narrowing, Pruning, States};
 use hyperplan_problem::{Mode, Objective, PathId, Problem, Quantifier};
 use hyperplan_smt::{Ask, Features, Header, Script, WriteOptions, write_header, write_script};
 use hyperplan_solver::{Deadline, Format, Propositional, Spec};
@@ -161,8 +161,11 @@ pub fn emit(problem: &Problem, objective: &Objective, config: &EmitConfig) -> Re
     let stop = || config.deadline.passed();
     let dialect = Dialect::new(config.solver.as_ref());
     // A core is about everything that was said, whether it can matter or not.
-    let prune = config.limits.prune && config.track != Track::UnsatCore;
-    let limits = Limits { prune, ..config.limits };
+    let pruning = match (config.limits.pruning, config.track) {
+        (Pruning::Full, Track::UnsatCore) => Pruning::Light,
+        (pruning, _) => pruning,
+    };
+    let limits = Limits { pruning, ..config.limits };
     let emitted =
         settled(problem, objective, config.states, limits, &stop, |encoder| build(encoder, config, &dialect));
     emitted.map_err(|error| match error {

@@ -4,7 +4,7 @@ use super::settled;
 use crate::direct;
 use crate::fact::{Error, Unsupported};
 use crate::prepare::is_existential;
-use hyperplan_encode::{Encoder, Goal, Limits, Narrowing, States};
+use hyperplan_encode::{Encoder, Goal, Limits, Narrowing, Pruning, States};
 use hyperplan_problem::{Objective, PathId, Problem, Strategy};
 use hyperplan_smt::{Model, Sort, Term, Value, is_large_number};
 use hyperplan_solver::{Deadline, PrintedModel, PrintedModelError};
@@ -25,8 +25,8 @@ pub fn strategy_of_model(
 ) -> Result<Strategy, Error> {
     let mut readings = Vec::new();
     for states in [States::Onehot, States::Enum, States::Bitvec, States::Int, States::Real] {
-        for prune in [true, false] {
-            let limits = Limits { prune, ..Limits::default() };
+        for pruning in [Pruning::Full, Pruning::Light, Pruning::None] {
+            let limits = Limits { pruning, ..Limits::default() };
             let stop = || deadline.passed();
             // What cannot be written so was not written so.
             let encoder =

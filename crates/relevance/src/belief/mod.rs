@@ -127,7 +127,7 @@ fn narrowed<const N: usize>(
         budget: arena.task.limits.pairs,
     };
     let alone = |at: usize, slack| {
-        if !arena.task.limits.prune {
+        if !arena.task.limits.prunes() {
             return Ok(Explored { layers: [Layers { at: Vec::new() }], lossy: false });
         }
         let wants = question(if at < leading { goal } else { &other }, slack);

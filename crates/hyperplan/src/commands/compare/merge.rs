@@ -3,8 +3,9 @@
 use super::{comparison, doing, last, open, report};
 use crate::args;
 use crate::failure::{Exit, Failure, Result};
-use crate::files::cannot_write;
+use crate::files::{cannot_write, read_bytes, reason};
 use crate::output::Output;
+use hyperplan_compare::foreign::{self, is_foreign};
 use hyperplan_compare::merge::added;
 use hyperplan_compare::{Log, Past, Record, prepare, tidy};
 use std::collections::BTreeSet;
@@ -34,10 +35,16 @@ pub(super) fn run(args: &args::Compare, out: &mut Output) -> Result {
     Ok(status.max(Exit::Undecided))
 }
 
-/// The runs of some logs.
+/// The runs of some logs, and results of others.
 fn read(paths: &[PathBuf], out: &Output) -> Result<Vec<Record>> {
     let mut all = Vec::new();
     for path in paths {
+        if is_foreign(path) {
+            let cannot = |why: String| Failure::input(format_args!("cannot read {}: {why}", path.display()));
+            let bytes = read_bytes(path).map_err(|error| cannot(reason(&error)))?;
+            all.extend(foreign::read(path, &bytes).map_err(|error| cannot(error.to_string()))?);
+            continue;
+        }
         let Past { records, notes } = Log::look(path).map_err(Failure::input)?;
         notes.iter().for_each(|note| out.remark(format_args!("note: {note}")));
         all.extend(records);

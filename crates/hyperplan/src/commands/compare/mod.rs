@@ -15,14 +15,49 @@ use crate::files::reason;
 use crate::output::Output;
 use comparison::Comparison;
 use doing::{Doing, keys};
+use hyperplan_compare::foreign::beside;
 use hyperplan_compare::merge::{Settled, settled};
 use hyperplan_compare::plan::Run;
 use hyperplan_compare::report::write_all;
 use hyperplan_compare::{Fault, Log, Past, Record, judge, summary, tidy, together};
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-const LOG: &str = "runs.jsonl";
+pub(super) const LOG: &str = "runs.jsonl";
+
+/// Benchmarks to be measured.
+pub(super) struct Measure {
+    pub(super) files: Vec<String>,
+    /// The solvers; without, all that are installed.
+    pub(super) solver: Option<String>,
+    /// The limit of each run.
+    pub(super) seconds: f64,
+    pub(super) jobs: u16,
+    /// Where the log is, which says what was done before, and the reports.
+    pub(super) folder: PathBuf,
+}
+
+/// Measures solvers on benchmarks, as the command does that says the same. Wrong answers are found, and are no failure.
+pub(super) fn measure(what: Measure, verbose: bool, out: &mut Output) -> Result {
+    let Measure { files, solver, seconds, jobs, folder } = what;
+    let args = args::Compare::new(files, solver, seconds);
+    let args = args::Compare { jobs, out: folder, ..args };
+    Ok(match run(&args, verbose, out)? {
+        Exit::Undecided => Exit::Undecided,
+        _ => Exit::Good,
+    })
+}
+
+/// The runs of some logs, each once.
+pub(super) fn look(logs: &[PathBuf], out: &Output) -> Result<Vec<Record>> {
+    let mut records = Vec::new();
+    for log in logs {
+        let past = Log::look(log).map_err(Failure::input)?;
+        past.notes.iter().for_each(|note| out.remark(format_args!("note: {note}")));
+        records.extend(past.records);
+    }
+    Ok(settle(records, out))
+}
 
 pub(crate) fn run(args: &args::Compare, verbose: bool, out: &mut Output) -> Result {
     let cluster = &args.cluster;
@@ -142,7 +177,7 @@ fn place(record: &Record) -> impl Ord + use<> {
 fn report(args: &args::Compare, records: &[Record], out: &mut Output) -> Result {
     let folder = args.out.as_path();
     let believed = args.certified.then(|| certified::certified(records, out));
-    let records = &together(believed.unwrap_or_else(|| records.to_vec()));
+    let records = &together(beside(believed.unwrap_or_else(|| records.to_vec())));
     let processors: BTreeSet<&str> = records.iter().filter_map(|run| run.processor.as_deref()).collect();
     if processors.len() > 1 {
         let all: Vec<&str> = processors.into_iter().collect();

@@ -12,8 +12,8 @@ use hyperplan_family::{
     About, Case, Dropped, Entry, Horizon, Layout, Map, Objective, Record, body_of, sha256,
 };
 use hyperplan_plan::{
-    self as plan, Config, EmitConfig, Fault, MinimizeError, Quantifiers, States, Status, Track, Verdict,
-    emit, minimize, solve,
+    self as plan, Config, EmitConfig, Fault, Limits, MinimizeError, Pruning, Quantifiers, States, Status,
+    Track, Verdict, emit, minimize, solve,
 };
 use hyperplan_problem::{NoFiles, Overrides, Problem, read};
 use hyperplan_solver::{Deadline, Spec};
@@ -36,6 +36,7 @@ pub(super) struct One<'a> {
 struct Encoding {
     states: Option<States>,
     quantifiers: Quantifiers,
+    pruning: Pruning,
 }
 
 impl One<'_> {
@@ -86,9 +87,9 @@ impl One<'_> {
     /// Searches for the least horizon.
     fn least(&self, map: &Map) -> Result<Found> {
         let objective = self.case.objective;
-        let most = objective.most_steps(map);
+        let (fewest, most) = (objective.least_steps(map), objective.most_steps(map));
         let mut problem = |steps: i64| problem(objective, map, u32::try_from(steps).unwrap_or(0));
-        let found = minimize(objective.name(), 1..=i64::from(most), &mut problem, &self.config());
+        let found = minimize(objective.name(), fewest.into()..=most.into(), &mut problem, &self.config());
         let least = match found {
             Ok(least) => least,
             Err(MinimizeError::Problem(failure)) => return Err(failure),
@@ -145,19 +146,21 @@ impl One<'_> {
             }
             let (states, quantifiers) =
                 (config::states_name(encoding.states), encoding.quantifiers.to_string());
-            let about = About { instance, case: self.case, horizon, steps, states, quantifiers };
+            let pruning = config::pruning_name(encoding.pruning).to_owned();
+            let about = About { instance, case: self.case, horizon, steps, states, quantifiers, pruning };
             self.benchmark(&problem, &file, (encoding, status, certificate.as_mut()), about)?;
         }
         Ok(true)
     }
 
     fn encodings(&self) -> impl Iterator<Item = Encoding> {
-        let Work { states, quantifiers, .. } = self.work;
+        let Work { states, quantifiers, pruning, .. } = self.work;
         // Without a second block there is nothing to keep or to expand.
-        let single = matches!(self.case.objective, Objective::Iso | Objective::Cso);
-        let quantifiers = if single { &quantifiers[..1] } else { &quantifiers[..] };
+        let quantifiers = if self.case.objective.is_single() { &quantifiers[..1] } else { &quantifiers[..] };
         states.iter().flat_map(move |&states| {
-            quantifiers.iter().map(move |&quantifiers| Encoding { states, quantifiers })
+            quantifiers.iter().flat_map(move |&quantifiers| {
+                pruning.iter().map(move |&pruning| Encoding { states, quantifiers, pruning })
+            })
         })
     }
 
@@ -223,16 +226,14 @@ impl One<'_> {
         about: About,
     ) -> Result<()> {
         let Some(objective) = problem.objective(self.case.objective.name()) else { return Ok(()) };
-        let map = self.case.map;
-        let remark = format!(
-            "Problem: {file}, a random map of {0} x {0} cells, {1} % of them obstacles, seed {2}; T = {3}",
-            map.size, map.density, map.seed, about.steps
-        );
+        let place = self.case.objective.place(self.case.map);
+        let remarks = vec![format!("Problem: {file}; T = {}", about.steps), place];
         let config = EmitConfig {
             quantifiers: encoding.quantifiers,
             states: encoding.states,
+            limits: Limits { pruning: encoding.pruning, ..self.work.common.limits },
             status: Some(status),
-            remarks: vec![remark],
+            remarks,
             deadline: self.deadline.within(self.work.limit),
             ..self.work.common.clone()
         };
@@ -282,7 +283,12 @@ enum Found {
 
 impl Encoding {
     fn instance(self, name: &str) -> String {
-        format!("{name}-{}-{}", config::states_name(self.states), self.quantifiers)
+        let name = format!("{name}-{}-{}", config::states_name(self.states), self.quantifiers);
+        match self.pruning {
+            // What families have unless something else is asked for.
+            Pruning::Light => name,
+            other => format!("{name}-{}", config::pruning_name(other)),
+        }
     }
 }
 
