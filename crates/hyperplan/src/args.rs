@@ -10,10 +10,10 @@ pub(crate) use compare::{Asked, Compare, Settings, Shard};
 pub(crate) use explain::Explain;
 pub(crate) use verify::Verify;
 
-use crate::foreign::Foreign;
 pub(crate) use crate::reading::{Others, Reading};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use hyperplan::foreign::Foreign;
 use hyperplan_family as family;
 use hyperplan_import::Known;
 use hyperplan_problem::answer::{Quantifiers, States, WitnessPath};

@@ -58,7 +58,7 @@ pub(crate) fn everything() -> Vec<Module> {
         if top().join(&script).exists() {
             follow(&script, Vec::new(), false, &mut found);
         }
-        for other in ["tests", "benches", "targets"] {
+        for other in ["tests", "benches", "examples", "targets"] {
             let Ok(entries) = fs::read_dir(top().join(&folder).join(other)) else { continue };
             let mut names: Vec<_> = entries.map(|entry| entry.expect("readable").file_name()).collect();
             names.sort();

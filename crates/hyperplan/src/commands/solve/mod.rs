@@ -8,26 +8,28 @@ use crate::config;
 use crate::explain::{Explain, Why};
 use crate::failure::{Exit, Failure, Result};
 use crate::files::write_bytes;
-use crate::foreign::Foreign;
 use crate::guard;
 use crate::load::Loaded;
 use crate::nusmv;
 use crate::output::Output;
 use crate::parameter::{Parameter, Searched};
-use crate::pictures::{Picture, Subject};
+use crate::pictures::{self, Picture};
 use crate::plans;
 use crate::proof::{Prover, Said};
 use crate::report::{json, paths_text};
 use crate::waiting::Waiting;
 use crate::wish::Wish;
+use hyperplan::draw::Subject;
+use hyperplan::foreign::Foreign;
+use hyperplan::search::{self, Decided};
 use hyperplan_outlet::one_line;
 use hyperplan_plan::{self as plan, MinimizeError, Watch};
 use hyperplan_problem::answer::plans::PlanFormat;
 use hyperplan_problem::answer::{
-    Answer, Below, Case, CostValue, Failed, Ordered, ReasonCode, Seconds, Size, Solver, Verdict, Verified,
-    WitnessPath, to_witness,
+    Answer, Below, Case, CostValue, Failed, ReasonCode, Seconds, Size, Verdict, Verified, WitnessPath,
+    to_witness,
 };
-use hyperplan_problem::{Objective, Problem, Quantifier, Strategy, Target, display};
+use hyperplan_problem::{Objective, Quantifier, Strategy};
 use hyperplan_render::{Scene, can_draw};
 use lanes::Team;
 use std::path::Path;
@@ -262,28 +264,18 @@ fn solve(
             Ok((outcome, searched)) => {
                 let problem = &searched.loaded.problem;
                 let objective = problem.objective(name).unwrap_or(objective);
-                let outcome = straight(problem, objective, outcome, team);
+                let first = team.args.first;
+                let straight = |outcome| search::straight(problem, objective, outcome, team.config);
+                let outcome = if first { outcome } else { straight(outcome) };
                 Ok((outcome, Some(searched), Costs::default()))
             }
             Err(error) => Err(unsolved(name, parameter, error, explain)),
         };
     }
     let targets = wish.targets(loaded, objective).map_err(|failure| (failure, ReasonCode::Unsupported))?;
-    if targets.is_empty() {
-        let outcome = plan::solve(&loaded.problem, objective, config);
-        return outcome
-            .map(|outcome| (straight(&loaded.problem, objective, outcome, team), None, Costs::default()))
-            .map_err(|error| failed(&error, String::new()));
-    }
-    let found = plan::cheapest(&loaded.problem, objective, &targets, config);
-    let plan::Cheapest { outcome, values, undecided } =
-        found.map_err(|error| failed(&error, String::new()))?;
-    let value = |(target, value): (&Target, &plan::Value)| CostValue {
-        expression: display::target(&loaded.problem, objective, target),
-        value: value.found,
-        least: value.least,
-    };
-    let costs = targets.iter().zip(&values).map(value).collect();
+    let Decided { outcome, costs, undecided } =
+        search::decide(&loaded.problem, objective, &targets, config, team.args.first)
+            .map_err(|error| failed(&error, String::new()))?;
     Ok((outcome, None, Costs { costs, undecided }))
 }
 
@@ -301,20 +293,6 @@ fn unsolved(
             (explain.failure(about, &error), error.code())
         }
     }
-}
-
-/// The answer with a strategy without detours, unless the first is wanted.
-fn straight(
-    problem: &Problem,
-    objective: &Objective,
-    outcome: plan::Outcome,
-    team: &Team<'_>,
-) -> plan::Outcome {
-    if team.args.first {
-        return outcome;
-    }
-    let deadline = team.config.deadline.within(plan::time_for(problem, objective, &outcome));
-    plan::straightened(problem, objective, outcome, team.config, &deadline).outcome
 }
 
 /// How long may be thought about why there is no strategy, if no longer than it took to find that out, and how long in any case.
@@ -358,43 +336,14 @@ fn answer(
     why: Option<&Why>,
     total: Duration,
 ) -> Answer {
-    let names = objective.paths.iter().map(|p| p.name.clone());
+    let about = (&loaded.problem, objective);
     Answer {
-        file: loaded.file.clone(),
-        objective: objective.name.clone(),
-        verdict: outcome.verdict,
         reason: why.map(|why| why.words.clone()),
         reason_code: why.map(|why| why.code),
-        horizon: Ordered(names.zip(outcome.horizons.iter().copied()).collect()),
-        witness: outcome.witness.as_ref().map(|s| to_witness(&loaded.problem, objective, s)),
-        verified: outcome.verified,
-        solver: Solver { name: outcome.solver.name.clone(), version: outcome.solver.version.clone() },
-        quantifiers: outcome.quantifiers,
-        states: outcome.states,
-        logic: outcome.size.logic.clone(),
-        iterations: outcome.iterations,
-        size: Size {
-            variables: outcome.size.variables,
-            clauses: outcome.size.clauses,
-            bytes: Some(outcome.size.bytes).filter(|bytes| *bytes > 0),
-        },
-        seconds: Seconds {
-            read: rounded(loaded.time.as_secs_f64()),
-            encode: rounded(outcome.seconds.encode),
-            solve: rounded(outcome.seconds.solve),
-            verify: rounded(outcome.seconds.verify),
-            total: rounded(total.as_secs_f64()),
-        },
         minimized: searched.map(|searched| searched.minimized.clone()),
         costs,
-        certificates: Vec::new(),
-        case: None,
+        ..search::answer(&loaded.file, about, outcome, (loaded.time, total))
     }
-}
-
-/// To microseconds: what a clock can tell.
-fn rounded(seconds: f64) -> f64 {
-    (seconds * 1e6).round() / 1e6
 }
 
 /// An outcome and all it takes to print it.
@@ -423,7 +372,7 @@ impl<'a> Found<'a> {
             strategy: Some(strategy),
             named: &[],
         };
-        subject.draw(picture)
+        pictures::draw(&subject, picture)
     }
 
     /// The paths as others want them: nothing of what comes after they were absorbed.
