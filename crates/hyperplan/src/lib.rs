@@ -37,7 +37,6 @@ mod error;
 pub mod foreign;
 #[doc(hidden)]
 pub mod horizon;
-mod objective;
 mod options;
 #[doc(hidden)]
 pub mod others;
@@ -49,10 +48,9 @@ mod source;
 
 pub use build::{Builder, Cell, Graph, Grid, System};
 pub use error::{Error, Faults};
-pub use objective::Objective;
 pub use options::{Cancel, Options, Progress, Solvers};
-pub use outcome::{Minimized, Outcome, Verification};
-pub use problem::Problem;
+pub use outcome::{Outcome, Verification};
+pub use problem::{Minimized, Objective, Problem};
 
 pub use horizon::{HorizonPart, PathHorizon};
 pub use hyperplan_horizon::Horizon;

@@ -79,17 +79,3 @@ pub enum Verification {
     /// Nobody knows: there is too much to look at.
     TooLarge,
 }
-
-/// The least value of a constant.
-#[derive(Debug)]
-#[non_exhaustive]
-pub struct Minimized {
-    /// The least value for which the objective is realizable, if one was found.
-    pub value: Option<i64>,
-    /// Every smaller value of the range is unrealizable.
-    pub proved: bool,
-    /// The problem with the value that the outcome is about.
-    pub problem: crate::Problem,
-    /// The answer for it.
-    pub outcome: Outcome,
-}

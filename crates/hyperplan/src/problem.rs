@@ -1,10 +1,13 @@
 //! A problem: from a file, a text, files of other tools, or built in code.
 
+mod objective;
+
+pub use objective::{Minimized, Objective};
+
 use crate::build::Builder;
 use crate::disk::{self, read_bytes, reason};
 use crate::error::{Error, Faults};
 use crate::foreign::{Foreign, is_foreign, text_of};
-use crate::objective::Objective;
 use crate::source::{Files, Source, of_kind};
 use hyperplan_import::{Input, Options as Reading};
 use hyperplan_outlet::one_line;
@@ -178,5 +181,15 @@ impl Problem {
                 .map_err(|error| Error::Write { path: path.clone(), why: reason(&error) })?;
         }
         Ok(path)
+    }
+}
+
+impl Builder {
+    /// The problem.
+    ///
+    /// # Errors
+    /// When it has errors, with their places in the text that was built.
+    pub fn build(self) -> Result<Problem, Error> {
+        Problem::of(self.source()?, Overrides::none())
     }
 }

@@ -10,9 +10,7 @@ pub use grid::{Cell, Grid};
 pub use system::System;
 
 use crate::error::Error;
-use crate::problem::Problem;
 use crate::source::{Files, Source};
-use hyperplan_problem::Overrides;
 use std::fmt::Display;
 use std::path::PathBuf;
 
@@ -100,17 +98,14 @@ impl Builder {
         self
     }
 
-    /// The problem.
-    ///
-    /// # Errors
-    /// When it has errors, with their places in the text that was built.
-    pub fn build(self) -> Result<Problem, Error> {
+    /// What was built, to be read.
+    pub(crate) fn source(self) -> Result<Source, Error> {
         let Builder { name, text, files, wrong } = self;
         if let Some(wrong) = wrong {
             return Err(wrong);
         }
         let name = name.unwrap_or_else(|| NAME.to_owned());
-        Problem::of(Source::Text { name, text, files }, Overrides::none())
+        Ok(Source::Text { name, text, files })
     }
 
     fn line(&mut self, text: &str) {

@@ -1,11 +1,11 @@
 //! What can be done with an objective of a problem.
 
+use super::Problem;
 use crate::draw::{Kind, Subject};
 use crate::error::Error;
 use crate::horizon::PathHorizon;
 use crate::options::Options;
-use crate::outcome::{Minimized, Outcome, Verification};
-use crate::problem::Problem;
+use crate::outcome::{Outcome, Verification};
 use crate::search::{Decided, decide, straight};
 use crate::source::Parsed;
 use hyperplan_horizon::{Horizon, horizons};
@@ -17,6 +17,20 @@ use hyperplan_solver::PrintedModel;
 use hyperplan_verify::{Budget, Check, Defeat, check, complete};
 use std::ops::RangeInclusive;
 use std::time::Instant;
+
+/// The least value of a constant.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Minimized {
+    /// The least value for which the objective is realizable, if one was found.
+    pub value: Option<i64>,
+    /// Every smaller value of the range is unrealizable.
+    pub proved: bool,
+    /// The problem with the value that the outcome is about.
+    pub problem: Problem,
+    /// The answer for it.
+    pub outcome: Outcome,
+}
 
 /// An objective of a problem.
 #[derive(Clone, Copy, Debug)]
