@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import warnings
 from typing import TYPE_CHECKING, Any, Callable, Hashable, Iterable, Mapping
 
 from . import _native
@@ -37,7 +38,10 @@ class System:
         node, unless `init` says where."""
         import networkx
 
-        data = networkx.node_link_data(graph, edges="links")
+        with warnings.catch_warnings():
+            # Its versions differ in what they call edges, and some say so; the language knows both.
+            warnings.simplefilter("ignore", FutureWarning)
+            data = networkx.node_link_data(graph)
         names = {_node_name(node): node for node in graph.nodes}
         if len(names) < len(graph.nodes):
             raise ValueError("several nodes of the graph have the same name")
