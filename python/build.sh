@@ -22,6 +22,8 @@ fi
 mkdir -p hyperplan.data/scripts
 trap 'rm -rf hyperplan.data' EXIT
 cp "$command" hyperplan.data/scripts/hyperplan
-if [ "$profile" = dev ]; then strip hyperplan.data/scripts/hyperplan; fi
+# What is stripped is compiled apart, so that is left to releases.
+options=()
+if [ "$profile" = dev ]; then strip hyperplan.data/scripts/hyperplan; else options+=(--strip); fi
 
-"${PYTHON:-python3}" -m maturin build --profile "$profile" --strip --out "$out"
+"${PYTHON:-python3}" -m maturin build --profile "$profile" --out "$out" "${options[@]}"
