@@ -21,9 +21,8 @@ install() {
   return 1
 }
 
-say "lints"
+say "format"
 cargo fmt --check
-cargo clippy --locked -- -D warnings
 
 say "wheel"
 python3 -m venv "$work/build"
