@@ -68,7 +68,7 @@ def builds(context: Context) -> None:
     rows = []
     for build in (
         Build("with CaDiCaL", [], 300),
-        Build("without", ["--no-default-features"], 120),
+        Build("without", ["--no-default-features", "--features", "cli"], 120),
     ):
         with tempfile.TemporaryDirectory() as folder:
             line = ["cargo", "build", "--release", "--offline", "-p", "hyperplan", "--target-dir", folder]

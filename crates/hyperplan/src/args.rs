@@ -12,10 +12,10 @@ pub(crate) use explain::Explain;
 pub(crate) use families::Family;
 pub(crate) use verify::Verify;
 
-use crate::foreign::Foreign;
 pub(crate) use crate::reading::{Others, Reading};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use hyperplan::foreign::Foreign;
 use hyperplan_import::Known;
 use hyperplan_problem::Difference;
 use hyperplan_problem::answer::{Quantifiers, States, WitnessPath};

@@ -5,6 +5,7 @@ use crate::files::reason;
 use hyperplan_plan::{EncodeError, Error, Evidence, Fallen, Fault, Note, Reason, Unsupported, Wrong};
 use hyperplan_problem::answer::ReasonCode;
 use hyperplan_solver::{Error as SolverError, Unknown, keep_query};
+use hyperplan_syntax::Diagnostic;
 use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -133,6 +134,20 @@ fn unsupported(what: &Unsupported) -> String {
         Unsupported::OneCheck => format!("{what}; use --quantifiers keep or expand"),
         Unsupported::NoPaths => format!("{what}; is it of another objective, or with another --set?"),
         what => what.to_string(),
+    }
+}
+
+/// Says with which flags files of other tools are read as they were meant.
+pub(crate) fn advise(diagnostics: &mut [Diagnostic]) {
+    for diagnostic in diagnostics {
+        let help = match diagnostic.code {
+            "unbounded-operator" => "say it with `--bound K`",
+            "other-precedence" => {
+                "this is read as it does; parentheses make it plain, and `--dialect` names another"
+            }
+            _ => continue,
+        };
+        diagnostic.help = Some(help.to_owned());
     }
 }
 

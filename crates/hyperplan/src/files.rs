@@ -1,12 +1,10 @@
 //! Reading files: regular ones of a sensible size, or standard input. Writing them whole or not at all.
 
 use crate::failure::{Failure, Result};
-use std::fs::File;
-use std::io::{self, Read, Write};
+use hyperplan::disk::{limited, text};
+pub(crate) use hyperplan::disk::{read_bytes, reason};
+use std::io::{self, Write};
 use std::path::Path;
-
-/// The most bytes of a file that are read: far more than any map or strategy has.
-const FILE_LIMIT: u64 = 1 << 30;
 
 /// The name of standard input.
 pub(crate) const STDIN: &str = "-";
@@ -15,18 +13,7 @@ pub(crate) const STDIN: &str = "-";
 pub(crate) fn read_source(path: &Path) -> Result<String> {
     let cannot = |why: String| Failure::input(format_args!("cannot read {}: {why}", name(path)));
     let bytes = if is_stdin(path) { limited(io::stdin().lock()) } else { read_bytes(path) };
-    let text = String::from_utf8(bytes.map_err(|e| cannot(reason(&e)))?).map_err(|error| {
-        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-        if good.contains(&0) {
-            return cannot("it is not a text file".to_owned());
-        }
-        let line = good.iter().filter(|byte| **byte == b'\n').count() + 1;
-        cannot(format!("it is not in UTF-8; the first byte that cannot be read is on line {line}"))
-    })?;
-    Ok(match text.strip_prefix('\u{feff}') {
-        Some(rest) => rest.to_owned(),
-        None => text,
-    })
+    text(bytes.map_err(|e| cannot(reason(&e)))?).map_err(cannot)
 }
 
 /// What a file is called in messages and answers.
@@ -36,42 +23,6 @@ pub(crate) fn name(path: &Path) -> String {
 
 pub(crate) fn is_stdin(path: &Path) -> bool {
     path.as_os_str() == STDIN
-}
-
-/// The bytes of a regular file. What has no end, or waits for somebody to write, is none.
-pub(crate) fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
-    let data = std::fs::metadata(path)?;
-    if data.is_dir() {
-        return Err(io::Error::other("it is a directory"));
-    }
-    if !data.is_file() {
-        return Err(io::Error::other("it is no regular file, but a device, a pipe or a socket"));
-    }
-    if data.len() > FILE_LIMIT {
-        return Err(too_long());
-    }
-    limited(File::open(path)?)
-}
-
-/// What there is to read, if it is not too long.
-fn limited(from: impl Read) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    from.take(FILE_LIMIT + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > FILE_LIMIT { Err(too_long()) } else { Ok(bytes) }
-}
-
-fn too_long() -> io::Error {
-    io::Error::other(format!("it has more than {FILE_LIMIT} bytes"))
-}
-
-/// Why a file cannot be read, in words without the system's error number.
-pub(crate) fn reason(error: &io::Error) -> String {
-    match error.kind() {
-        io::ErrorKind::NotFound => "there is no such file".to_owned(),
-        io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
-        io::ErrorKind::StorageFull => "the disk is full".to_owned(),
-        _ => error.to_string(),
-    }
 }
 
 /// Writes a file so that it is there whole, or as it was before; what is no regular file, such as a device, is written

@@ -1,38 +1,33 @@
 //! Files of other tools, in place of a problem file: what they mean.
 
-use hyperplan_import::{Imported, Input, Options, import};
+use crate::disk::{self, read_bytes, reason};
+use hyperplan_import::{Imported, Input, Kind, Options, ascii, import};
 use hyperplan_problem::{Lowered, NoFiles, Overrides, lower};
 use hyperplan_syntax::{Diagnostic, SourceMap, print};
+use std::path::Path;
 
 /// Models and formulas, with their texts.
 #[derive(Clone, Debug)]
-pub(crate) struct Foreign {
-    pub(crate) inputs: Vec<Input>,
-    pub(crate) options: Options,
+pub struct Foreign {
+    /// The files.
+    pub inputs: Vec<Input>,
+    /// How formulas are read.
+    pub options: Options,
 }
 
 impl Foreign {
     /// What the files mean, and what is wrong with them.
-    pub(crate) fn lower(&self, overrides: &Overrides) -> (Lowered, SourceMap) {
+    #[must_use]
+    pub fn lower(&self, overrides: &Overrides) -> (Lowered, SourceMap) {
         let (lowered, sources, _) = self.read(overrides);
         (lowered, sources)
     }
 
     /// The same, with what the files became.
-    pub(crate) fn read(&self, overrides: &Overrides) -> (Lowered, SourceMap, Imported) {
+    #[must_use]
+    pub fn read(&self, overrides: &Overrides) -> (Lowered, SourceMap, Imported) {
         let mut sources = SourceMap::new();
         let mut imported = import(&self.inputs, &self.options, &mut sources);
-        for diagnostic in &mut imported.diagnostics {
-            match diagnostic.code {
-                "unbounded-operator" => diagnostic.help = Some("say it with `--bound K`".to_owned()),
-                "other-precedence" => {
-                    let help =
-                        "this is read as it does; parentheses make it plain, and `--dialect` names another";
-                    diagnostic.help = Some(help.to_owned());
-                }
-                _ => {}
-            }
-        }
         let mut diagnostics = std::mem::take(&mut imported.diagnostics);
         if diagnostics.iter().any(Diagnostic::is_error) {
             return (Lowered { diagnostics, ..Lowered::default() }, sources, imported);
@@ -45,7 +40,32 @@ impl Foreign {
     }
 }
 
+/// How the text of a file of another tool begins, where its name alone does not say what it is.
+const HEAD: usize = 4096;
+
+/// Whether a file is one of another tool. How it begins decides where its name does not; one that cannot be read is told of
+/// where it is used.
+#[must_use]
+pub fn is_foreign(path: &Path) -> bool {
+    let begins = || {
+        read_bytes(path).map(|bytes| String::from_utf8_lossy(&bytes[..bytes.len().min(HEAD)]).into_owned())
+    };
+    let by_content = path.extension().is_some_and(|ending| ending == "txt" || ending == "pddl");
+    let text = if by_content { begins().unwrap_or_default() } else { String::new() };
+    path.to_str().and_then(|name| Kind::of(name, &text)).is_some()
+}
+
+/// The text of a file of another tool.
+///
+/// # Errors
+/// In words, why it cannot be read.
+pub fn text_of(path: &Path) -> Result<String, String> {
+    let bytes = read_bytes(path).map_err(|error| reason(&error))?;
+    if path.extension().is_some_and(|ending| ending == "aig") { ascii(&bytes) } else { disk::text(bytes) }
+}
+
 /// What files became, as a problem file that says where things come from.
-pub(crate) fn text(imported: &Imported) -> String {
+#[must_use]
+pub fn text(imported: &Imported) -> String {
     format!("{}\n{}", imported.about, print(&imported.file, ""))
 }

@@ -2,9 +2,9 @@
 
 use crate::args::{Cli, Command, Plan, Reading};
 use crate::failure::{Failure, Result};
-use crate::files::{self, read_bytes, read_source, reason};
-use crate::foreign::Foreign;
-use hyperplan_import::{Input, Kind, Options, ascii};
+use crate::files;
+use hyperplan::foreign::{Foreign, is_foreign, text_of};
+use hyperplan_import::{Input, Options};
 use hyperplan_outlet::one_line;
 use std::path::{Path, PathBuf};
 
@@ -74,24 +74,10 @@ fn one_strategy(plan: &Plan, model: bool) -> Result<()> {
     Ok(())
 }
 
-/// Whether a file is one of another tool.
-pub(crate) fn is_foreign(path: &Path) -> bool {
-    // How a file begins decides where its name does not; one that cannot be read is told of where it is used.
-    let begins = || {
-        read_bytes(path).map(|bytes| String::from_utf8_lossy(&bytes[..bytes.len().min(4096)]).into_owned())
-    };
-    let by_content = path.extension().is_some_and(|ending| ending == "txt" || ending == "pddl");
-    let text = if by_content { begins().unwrap_or_default() } else { String::new() };
-    path.to_str().and_then(|name| Kind::of(name, &text)).is_some()
-}
-
 /// The text of a file of another tool.
 fn text(path: &Path) -> Result<String> {
-    if path.extension().is_none_or(|ending| ending != "aig") {
-        return read_source(path);
-    }
-    let cannot = |why: String| Failure::input(format_args!("cannot read {}: {why}", path.display()));
-    ascii(&read_bytes(path).map_err(|error| cannot(reason(&error)))?).map_err(cannot)
+    // Standard input is nothing that ends in a known way.
+    text_of(path).map_err(|why| Failure::input(format_args!("cannot read {}: {why}", files::name(path))))
 }
 
 /// The models and formulas among what was given as strategies.

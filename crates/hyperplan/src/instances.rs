@@ -3,9 +3,9 @@
 use crate::args;
 use crate::failure::{Failure, Result};
 use crate::files::{read_bytes, reason};
-use crate::load::Beside;
 use crate::output::Output;
 use crate::report;
+use hyperplan::disk::Beside;
 use hyperplan_compare::plan::{Instance, Kind, sha256};
 use hyperplan_compare::{Answer, Query};
 use hyperplan_horizon::horizons;

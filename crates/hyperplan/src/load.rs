@@ -1,13 +1,15 @@
 //! Files into problems and strategies.
 
 use crate::args;
+use crate::explain::advise;
 use crate::failure::{Failure, Result};
-use crate::files::{self, read_bytes, read_source, reason};
+use crate::files::{self, read_source};
 use crate::output::Output;
 use crate::report;
+use hyperplan::disk::Beside;
 use hyperplan_problem::answer::{StrategyFile, plans, to_strategy};
-use hyperplan_problem::{Loader, Lowered, Objective, Overrides, Problem, Strategy, Value, lower, read};
-use hyperplan_syntax::{SourceMap, Span, ast};
+use hyperplan_problem::{Lowered, Objective, Overrides, Problem, Strategy, Value, lower, read};
+use hyperplan_syntax::{SourceMap, ast};
 use hyperplan_verify::{Budget, complete};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -60,7 +62,9 @@ impl Loaded {
         let folder = Beside(args.file.parent().unwrap_or(Path::new("")).to_owned());
         let overrides = Overrides { values: args.set.clone() };
         if let Some(foreign) = &args.foreign {
-            return foreign.lower(&overrides);
+            let (mut lowered, sources) = foreign.lower(&overrides);
+            advise(&mut lowered.diagnostics);
+            return (lowered, sources);
         }
         let mut sources = SourceMap::new();
         let lowered = read(&mut sources, &args.file.display().to_string(), text, &folder, &overrides);
@@ -93,16 +97,6 @@ impl Loaded {
             ))),
         }
     }
-
-    /// What is written at a place, on one line.
-    pub(crate) fn snippet(&self, span: Span) -> String {
-        let words: Vec<&str> = self.sources.snippet(span).split_whitespace().collect();
-        let line = words.join(" ");
-        match line.char_indices().nth(60) {
-            Some((end, _)) => format!("{}...", &line[..end]),
-            None => line,
-        }
-    }
 }
 
 /// The text of a problem file; those of other tools were read before.
@@ -123,15 +117,6 @@ pub(crate) fn lower_file(
     let folder = Beside(args.file.parent().unwrap_or(Path::new("")).to_owned());
     let overrides = Overrides { values: args.set.clone() }.with(constant, value);
     lower(file, sources, &folder, &overrides)
-}
-
-/// Files named in a problem file are beside it.
-pub(crate) struct Beside(pub(crate) PathBuf);
-
-impl Loader for Beside {
-    fn load(&self, path: &str) -> Result<Vec<u8>, String> {
-        read_bytes(&self.0.join(path)).map_err(|e| reason(&e))
-    }
 }
 
 /// Where strategy files are described.

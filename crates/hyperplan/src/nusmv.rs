@@ -1,6 +1,6 @@
 //! Strategies as traces of NuSMV: a state each, of which those variables are told that have changed.
 
-use crate::foreign::Foreign;
+use hyperplan::foreign::Foreign;
 use hyperplan_import::{Original, Originals};
 use hyperplan_problem::Overrides;
 use hyperplan_problem::answer::{Scalar, WitnessPath};

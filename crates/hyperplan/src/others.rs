@@ -1,6 +1,5 @@
 //! Which paths are drawn: those of a strategy, and of all that it has to cope with the worst, or many for a menu.
 
-use crate::failure::{Failure, Result};
 use hyperplan_problem::{
     FormulaId, Node, Objective, PathId, Problem, Quantifier, State, Strategy, Trace, display,
 };
@@ -16,25 +15,53 @@ const MOST_STARTS: usize = 24;
 const MOST_REPLACED: usize = 48;
 const MOST_PARTS: usize = 40;
 
+/// Why something is not drawn.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Undrawn {
+    /// The objective has no such path.
+    #[error("{objective} has no path {path}; it has {paths}")]
+    NoPath {
+        /// The objective.
+        objective: String,
+        /// What was named.
+        path: String,
+        /// Its paths.
+        paths: String,
+    },
+    /// There is nothing to draw of a path.
+    #[error(
+        "there is no path {0} to draw: the strategy has none, and none was found that it has to cope with"
+    )]
+    Missing(String),
+    /// What there is cannot be drawn.
+    #[error(transparent)]
+    Render(#[from] hyperplan_render::Error),
+}
+
 /// The paths to draw.
-pub(crate) struct Shown {
-    pub(crate) traces: Vec<Trace>,
+pub struct Shown {
+    /// The paths.
+    pub traces: Vec<Trace>,
     /// What legends say of those that are not the strategy's.
-    pub(crate) note: &'static str,
+    pub note: &'static str,
 }
 
 /// The paths of a strategy and those of the next block that come closest to defeating it, or do. Where some are named, only
 /// these.
-pub(crate) fn shown(
+///
+/// # Errors
+/// When one that is named cannot be drawn.
+pub fn shown(
     problem: &Problem,
     objective: &Objective,
     strategy: &Strategy,
     named: &[String],
-) -> Result<Shown> {
+) -> Result<Shown, Undrawn> {
     if let Some(name) = named.iter().find(|name| objective.path(name).is_none()) {
         let paths: Vec<&str> = objective.paths.iter().map(|path| path.name.as_str()).collect();
-        let (objective, paths) = (&objective.name, paths.join(", "));
-        return Err(Failure::input(format_args!("{objective} has no path {name}; it has {paths}")));
+        let (objective, path, paths) = (objective.name.clone(), name.clone(), paths.join(", "));
+        return Err(Undrawn::NoPath { objective, path, paths });
     }
     let leading = objective.leading_block();
     let is_other = |name: &String| objective.path(name).is_some_and(|path| !leading.contains(&path));
@@ -44,9 +71,7 @@ pub(crate) fn shown(
     let traces: Vec<Trace> = strategy.traces.iter().chain(&others).filter(is_named).cloned().collect();
     let is_there = |name: &&String| traces.iter().any(|trace| objective.paths[trace.path].name == **name);
     match named.iter().find(|name| !is_there(name)) {
-        Some(name) => Err(Failure::input(format_args!(
-            "there is no path {name} to draw: the strategy has none, and none was found that it has to cope with"
-        ))),
+        Some(name) => Err(Undrawn::Missing(name.clone())),
         None => Ok(Shown { traces, note }),
     }
 }
@@ -76,12 +101,15 @@ fn others(problem: &Problem, objective: &Objective, strategy: &Strategy) -> (Vec
 
 /// For a page: the paths of the strategy with the worst others, and then with others from each start, and after each action
 /// of the strategy that is replaced by another.
-pub(crate) fn variants(
+///
+/// # Errors
+/// Those of [`shown()`].
+pub fn variants(
     problem: &Problem,
     objective: &Objective,
     strategy: &Strategy,
     named: &[String],
-) -> Result<Vec<Variant>> {
+) -> Result<Vec<Variant>, Undrawn> {
     let Shown { traces, note } = shown(problem, objective, strategy, named)?;
     let name = match note {
         "" => "the strategy",

@@ -2,12 +2,13 @@
 //! the folder of the comparison, so that what is run is there to be read, and run again.
 
 use crate::args;
+use crate::explain::advise;
 use crate::failure::{Failure, Result};
 use crate::files::{cannot_write, read_source, write_bytes};
-use crate::foreign::{Foreign, text};
-use crate::gather::{is_foreign, known_semantics, options, together};
+use crate::gather::{known_semantics, options, together};
 use crate::output::Output;
 use crate::report;
+use hyperplan::foreign::{Foreign, is_foreign, text};
 use hyperplan_import::{Known, Options};
 use hyperplan_problem::Overrides;
 use std::collections::BTreeSet;
@@ -117,7 +118,7 @@ impl Entry {
         out: &Output,
     ) -> Result<String> {
         let foreign: Foreign = together(self.files.iter().map(PathBuf::as_path), self.options.clone())?;
-        let (lowered, sources, imported) = foreign.read(&Overrides::default());
+        let (mut lowered, sources, imported) = foreign.read(&Overrides::default());
         if lowered.has_errors() {
             if brief {
                 let first = lowered.diagnostics.iter().find(|diagnostic| diagnostic.is_error());
@@ -128,6 +129,7 @@ impl Entry {
                 });
                 return Err(Failure::input(format_args!("{place}{why}")));
             }
+            advise(&mut lowered.diagnostics);
             report::diagnostics(&sources, &lowered.diagnostics, out);
             return Err(Failure::said());
         }

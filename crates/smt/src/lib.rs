@@ -30,6 +30,6 @@ pub use term::{Enumeration, Op, Sort, Stem, Term};
 pub use terms::{Terms, View};
 pub use value::{Model, Value};
 pub use write::{
-    Ask, Header, Printer, Status, WriteOptions, symbol_text, term_text, value_text, write_comment,
-    write_header, write_script,
+    Ask, Header, Printer, SortName, Status, SymbolName, WriteOptions, symbol_text, term_text, value_text,
+    write_comment, write_header, write_script,
 };

@@ -30,7 +30,7 @@ pub(crate) fn top() -> PathBuf {
 /// The folders of all crates, from the top.
 pub(crate) fn crates() -> Vec<PathBuf> {
     let mut all: Vec<PathBuf> =
-        ["tests", "tests/random", "tests/tidy", "tests/tiny", "fuzz"].map(PathBuf::from).to_vec();
+        ["tests", "tests/random", "tests/tidy", "tests/tiny", "fuzz", "python"].map(PathBuf::from).to_vec();
     let entries = fs::read_dir(top().join("crates")).expect("the crates lie there");
     all.extend(entries.map(|entry| Path::new("crates").join(entry.expect("readable").file_name())));
     all.sort();
@@ -58,7 +58,7 @@ pub(crate) fn everything() -> Vec<Module> {
         if top().join(&script).exists() {
             follow(&script, Vec::new(), false, &mut found);
         }
-        for other in ["tests", "benches", "targets"] {
+        for other in ["tests", "benches", "examples", "targets"] {
             let Ok(entries) = fs::read_dir(top().join(&folder).join(other)) else { continue };
             let mut names: Vec<_> = entries.map(|entry| entry.expect("readable").file_name()).collect();
             names.sort();

@@ -1,8 +1,8 @@
 //! What `certify` takes.
 
 use super::{Limit, Output, Reading, Selection};
-use crate::foreign::Foreign;
 use clap::Args;
+use hyperplan::foreign::Foreign;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]

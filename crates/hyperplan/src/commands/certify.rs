@@ -4,13 +4,13 @@ use crate::args::{self, Certify};
 use crate::config;
 use crate::failure::{Exit, Failure, Result};
 use crate::files::{self, reason};
-use crate::foreign::Foreign;
 use crate::guard;
 use crate::load::{self, Consts, Loaded};
 use crate::output::Output;
 use crate::proof::{DESCRIPTION, REFUTATION, status};
 use crate::report::json;
 use crate::wish::Sums;
+use hyperplan::foreign::Foreign;
 use hyperplan_certify::{
     Bound, Certificate, Checked, Claim, Error, dimacs, pseudo_boolean, refutation, with_bounds,
 };

@@ -3,10 +3,10 @@
 use crate::args;
 use crate::config;
 use crate::failure::{Exit, Result};
-use crate::foreign;
 use crate::load::{self, Loaded};
 use crate::output::Output;
 use crate::report;
+use hyperplan::foreign;
 use hyperplan_outlet::one_line;
 use hyperplan_plan::{Budget, Lints};
 use hyperplan_problem::Overrides;

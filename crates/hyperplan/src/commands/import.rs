@@ -1,11 +1,12 @@
 //! `hyperplan import`: a problem file from those of other tools.
 
 use crate::args;
+use crate::explain::advise;
 use crate::failure::{Exit, Failure, Result};
 use crate::files::write_bytes;
-use crate::foreign::text;
 use crate::output::Output;
 use crate::report;
+use hyperplan::foreign::text;
 use hyperplan_problem::Overrides;
 
 pub(crate) fn run(args: &args::Import, out: &mut Output) -> Result {
@@ -15,7 +16,8 @@ pub(crate) fn run(args: &args::Import, out: &mut Output) -> Result {
             "{file} is neither a model (.smv, .aag, .aig, .txt, .pddl) nor a formula (.hq) of another tool"
         )));
     };
-    let (lowered, sources, imported) = foreign.read(&Overrides { values: args.problem.set.clone() });
+    let (mut lowered, sources, imported) = foreign.read(&Overrides { values: args.problem.set.clone() });
+    advise(&mut lowered.diagnostics);
     report::diagnostics(&sources, &lowered.diagnostics, out);
     if lowered.has_errors() {
         return Ok(Exit::Input);

@@ -7,7 +7,8 @@ use crate::files::check_writable;
 use crate::guard;
 use crate::load::{Given, Loaded};
 use crate::output::Output;
-use crate::pictures::{Picture, Subject};
+use crate::pictures::{Picture, draw, frames};
+use hyperplan::draw::Subject;
 use hyperplan_problem::{Objective, Strategy};
 use hyperplan_render::TextStyle;
 
@@ -38,13 +39,13 @@ pub(crate) fn run(args: &args::Plot, out: &mut Output) -> Result {
     let strategy = strategies.first().map(|(_, strategy)| strategy);
     let subject = Subject { problem: &loaded.problem, objective, strategy, named: &args.path };
     if let Some(picture) = &picture {
-        subject.draw(picture)?;
+        draw(&subject, picture)?;
     }
     if let Some(folder) = &args.frames {
-        subject.frames(folder, picture.as_ref().is_some_and(Picture::is_svg))?;
+        frames(&subject, folder, picture.as_ref().is_some_and(Picture::is_svg))?;
     }
     if picture.is_none() && args.frames.is_none() {
-        let text = subject.text(TextStyle { color: out.color })?;
+        let text = subject.text(TextStyle { color: out.color }).map_err(Failure::input)?;
         out.write(|w| w.write_all(text.as_bytes()))?;
     }
     Ok(Exit::Good)

@@ -280,6 +280,11 @@ impl States {
 
 names!(pub Quantifiers: Auto "auto", Keep "keep", Expand "expand", Cegis "cegis", Explicit "explicit");
 names!(pub Verified: BySearch "by-search", BySolver "by-solver");
+names!(pub Verdict: Realizable "realizable", Unrealizable "unrealizable", Unknown "unknown");
+names!(pub ReasonCode: Timeout "timeout", Interrupted "interrupted", OutOfMemory "out-of-memory", Incomplete "incomplete",
+    SolverGaveUp "solver-gave-up", DeadEnds "dead-ends", NoEnd "no-end", LargeNumbers "large-numbers",
+    Unverified "unverified", Several "several", Unsupported "unsupported", TooLarge "too-large",
+    SolverFailed "solver-failed", WrongModel "wrong-model", Disagreement "disagreement", Io "io", Bug "bug");
 names!(pub States: Onehot "onehot", Bitvec "bitvec", Int "int", Enum "enum", Real "real");
 
 /// How a witness was checked.

@@ -266,7 +266,7 @@ impl Walk<'_> {
             w.write_all(if i == 0 { b"(" } else { b" (" })?;
             SymbolName::new(self.of.terms, variable).write(w)?;
             w.write_all(b" ")?;
-            let sort = SortName { terms: self.of.terms, sort: self.of.terms.sort(variable) };
+            let sort = SortName::new(self.of.terms, self.of.terms.sort(variable));
             sort.write(w)?;
             w.write_all(b")")?;
         }

@@ -5,14 +5,16 @@ use std::io;
 use crate::term::{Op, Sort, Term};
 use crate::terms::{Terms, View};
 
-/// A symbol or bound variable of an arena, for printing.
-pub(crate) struct SymbolName<'a> {
+/// A symbol or bound variable of an arena, for printing: with rsmt2 a symbol, and an expression too.
+pub struct SymbolName<'a> {
     terms: &'a Terms,
     symbol: Term,
 }
 
 impl<'a> SymbolName<'a> {
-    pub(crate) fn new(terms: &'a Terms, symbol: Term) -> Self {
+    /// The name of a symbol; what is none cannot be written.
+    #[must_use]
+    pub fn new(terms: &'a Terms, symbol: Term) -> Self {
         SymbolName { terms, symbol }
     }
 
@@ -27,13 +29,19 @@ impl<'a> SymbolName<'a> {
     }
 }
 
-/// A sort of an arena, for printing.
-pub(crate) struct SortName<'a> {
-    pub(crate) terms: &'a Terms,
-    pub(crate) sort: Sort,
+/// A sort of an arena, for printing: with rsmt2 a sort.
+pub struct SortName<'a> {
+    terms: &'a Terms,
+    sort: Sort,
 }
 
-impl SortName<'_> {
+impl<'a> SortName<'a> {
+    /// A sort by its name.
+    #[must_use]
+    pub fn new(terms: &'a Terms, sort: Sort) -> Self {
+        SortName { terms, sort }
+    }
+
     pub(crate) fn write(&self, w: &mut impl io::Write) -> io::Result<()> {
         match self.sort {
             Sort::Enum(enumeration) => self.terms.enumeration_name(enumeration).write(w),

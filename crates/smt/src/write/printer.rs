@@ -130,7 +130,7 @@ impl Printer {
             w.write_all(b"(declare-fun ")?;
             rsmt2::symbol(w, &SymbolName::new(terms, symbol))?;
             w.write_all(b" () ")?;
-            rsmt2::sort(w, &SortName { terms, sort: terms.sort(symbol) })?;
+            rsmt2::sort(w, &SortName::new(terms, terms.sort(symbol)))?;
             w.write_all(b")\n")?;
         }
         Ok(())
@@ -244,7 +244,7 @@ impl Printer {
         w.write_all(b"(define-fun ")?;
         rsmt2::symbol(w, &SharedName { series: self.series, term: t })?;
         w.write_all(b" () ")?;
-        rsmt2::sort(w, &SortName { terms, sort: terms.sort(t) })?;
+        rsmt2::sort(w, &SortName::new(terms, terms.sort(t)))?;
         w.write_all(b" ")?;
         rsmt2::expression(w, &self.expression(terms, t, true))?;
         w.write_all(b")\n")?;

@@ -22,6 +22,12 @@ impl Sym2Smt for SymbolName<'_> {
     }
 }
 
+impl Expr2Smt for SymbolName<'_> {
+    fn expr_to_smt2<W: io::Write>(&self, w: &mut W, _: ()) -> SmtRes<()> {
+        Ok(self.write(w)?)
+    }
+}
+
 impl Sym2Smt for SharedName {
     fn sym_to_smt2<W: io::Write>(&self, w: &mut W, _: ()) -> SmtRes<()> {
         Ok(self.write(w)?)

@@ -4,14 +4,15 @@ use super::plan_format;
 use crate::args::SolveFormat;
 use crate::failure::Result;
 use crate::files::write_bytes;
-use crate::foreign::Foreign;
 use crate::load::Loaded;
 use crate::nusmv;
 use crate::output::Output;
 use crate::parameter::Searched;
-use crate::pictures::{Picture, Subject};
+use crate::pictures::{self, Picture};
 use crate::plans;
 use crate::report::{json, paths_text, role};
+use hyperplan::draw::Subject;
+use hyperplan::foreign::Foreign;
 use hyperplan_outlet::one_line;
 use hyperplan_plan as plan;
 use hyperplan_problem::answer::plans::PlanFormat;
@@ -62,8 +63,8 @@ impl<'a> Found<'a> {
                 named: &[],
             };
             match self.answer.several {
-                Some(_) => subject.draw(&picture.with_name(&number.to_string())),
-                None => subject.draw(picture),
+                Some(_) => pictures::draw(&subject, &picture.with_name(&number.to_string())),
+                None => pictures::draw(&subject, picture),
             }
         };
         (1..).zip(self.strategies()).map(draw).fold(Ok(()), Result::and)

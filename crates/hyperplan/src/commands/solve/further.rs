@@ -1,12 +1,13 @@
 //! What is looked for once there is an answer: the one that is preferred, and others that differ.
 
 use super::lanes::Team;
-use super::{Costs, Solved, cost_values};
+use super::{Costs, Solved};
 use crate::args;
 use crate::explain::Explain;
 use crate::failure::Failure;
 use crate::load::Loaded;
 use crate::wish::Wish;
+use hyperplan::search::cost_values;
 use hyperplan_plan::{self as plan, Another, Wanted};
 use hyperplan_problem::answer::{Answer, More, Other, ReasonCode, Several, to_witness};
 use hyperplan_problem::{Objective, Strategy, Target};

@@ -21,14 +21,12 @@ use crate::report::json;
 use crate::waiting::Waiting;
 use crate::wish::{Smallest, Wish};
 use found::Found;
+use hyperplan::search::{self, Decided};
 use hyperplan_certify::Apart;
 use hyperplan_plan::{self as plan, MinimizeError, Watch};
+use hyperplan_problem::Objective;
 use hyperplan_problem::answer::plans::PlanFormat;
-use hyperplan_problem::answer::{
-    Answer, Below, Case, CostValue, Failed, More, Ordered, ReasonCode, Seconds, Size, Solver, Verdict,
-    to_witness,
-};
-use hyperplan_problem::{Objective, Problem, Target, display};
+use hyperplan_problem::answer::{Answer, Below, Case, CostValue, Failed, More, ReasonCode, Verdict};
 use hyperplan_render::can_draw;
 use lanes::Team;
 use std::time::{Duration, Instant};
@@ -329,38 +327,19 @@ fn solve(
             Ok((outcome, searched)) => {
                 let problem = &searched.loaded.problem;
                 let objective = problem.objective(name).unwrap_or(objective);
-                let outcome = straight(problem, objective, outcome, team);
+                let first = team.args.first;
+                let straight = |outcome| search::straight(problem, objective, outcome, team.config);
+                let outcome = if first { outcome } else { straight(outcome) };
                 Ok(Solved { searched: Some(searched), ..Solved::new(outcome) })
             }
             Err(error) => Err(unsolved(name, parameter, error, explain)),
         };
     }
     let targets = wish.targets(loaded, objective).map_err(|failure| (failure, ReasonCode::Unsupported))?;
-    if targets.is_empty() {
-        let outcome = plan::solve(&loaded.problem, objective, config);
-        return outcome
-            .map(|outcome| Solved::new(straight(&loaded.problem, objective, outcome, team)))
-            .map_err(|error| failed(&error, String::new()));
-    }
-    let found = plan::cheapest(&loaded.problem, objective, &targets, config);
-    let plan::Cheapest { outcome, values, undecided } =
-        found.map_err(|error| failed(&error, String::new()))?;
-    let costs = cost_values((&loaded.problem, objective), &targets, &values);
+    let Decided { outcome, costs, undecided } =
+        search::decide(&loaded.problem, objective, &targets, config, team.args.first)
+            .map_err(|error| failed(&error, String::new()))?;
     Ok(Solved { open: Costs { costs, undecided }, ..Solved::new(outcome) })
-}
-
-/// What targets come to.
-fn cost_values(
-    (problem, objective): (&Problem, &Objective),
-    targets: &[Target],
-    values: &[plan::Value],
-) -> Vec<CostValue> {
-    let value = |(target, value): (&Target, &plan::Value)| CostValue {
-        expression: display::target(problem, objective, target),
-        value: value.found,
-        least: value.least,
-    };
-    targets.iter().zip(values).map(value).collect()
 }
 
 /// Why the least value of a constant is not known.
@@ -377,20 +356,6 @@ fn unsolved(
             (explain.failure(about, &error), error.code())
         }
     }
-}
-
-/// The answer with a strategy without detours, unless the first is wanted.
-fn straight(
-    problem: &Problem,
-    objective: &Objective,
-    outcome: plan::Outcome,
-    team: &Team<'_>,
-) -> plan::Outcome {
-    if team.args.first {
-        return outcome;
-    }
-    let deadline = team.config.deadline.within(plan::time_for(problem, objective, &outcome));
-    plan::straightened(problem, objective, outcome, team.config, &deadline).outcome
 }
 
 /// How long may be thought about why there is no strategy, if no longer than it took to find that out, and how long in any case.
@@ -436,42 +401,12 @@ fn answer(
     why: Option<&Why>,
     total: Duration,
 ) -> Answer {
-    let names = objective.paths.iter().map(|p| p.name.clone());
+    let about = (&loaded.problem, objective);
     Answer {
-        file: loaded.file.clone(),
-        objective: objective.name.clone(),
-        verdict: outcome.verdict,
         reason: why.map(|why| why.words.clone()),
         reason_code: why.map(|why| why.code),
-        horizon: Ordered(names.zip(outcome.horizons.iter().copied()).collect()),
-        witness: outcome.witness.as_ref().map(|s| to_witness(&loaded.problem, objective, s)),
-        verified: outcome.verified,
-        solver: Solver { name: outcome.solver.name.clone(), version: outcome.solver.version.clone() },
-        quantifiers: outcome.quantifiers,
-        states: outcome.states,
-        logic: outcome.size.logic.clone(),
-        iterations: outcome.iterations,
-        size: Size {
-            variables: outcome.size.variables,
-            clauses: outcome.size.clauses,
-            bytes: Some(outcome.size.bytes).filter(|bytes| *bytes > 0),
-        },
-        seconds: Seconds {
-            read: rounded(loaded.time.as_secs_f64()),
-            encode: rounded(outcome.seconds.encode),
-            solve: rounded(outcome.seconds.solve),
-            verify: rounded(outcome.seconds.verify),
-            total: rounded(total.as_secs_f64()),
-        },
         minimized: searched.map(|searched| searched.minimized.clone()),
         costs,
-        several: None,
-        certificates: Vec::new(),
-        case: None,
+        ..search::answer(&loaded.file, about, outcome, (loaded.time, total))
     }
-}
-
-/// To microseconds: what a clock can tell.
-fn rounded(seconds: f64) -> f64 {
-    (seconds * 1e6).round() / 1e6
 }
