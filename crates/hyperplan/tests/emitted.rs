@@ -25,7 +25,7 @@ const KINDS: &[&[&str]] = &[
     &["--quantifiers", "keep", "--states", "onehot", "--no-pruning"],
     &["--quantifiers", "keep", "--states", "enum", "--no-pruning", "--no-comments"],
     &["--quantifiers", "expand", "--states", "onehot", "--no-pruning"],
-    &["--quantifiers", "expand", "--states", "onehot", "--pruning", "none"],
+    &["--quantifiers", "expand", "--states", "int", "--pruning", "none"],
     &["--quantifiers", "cegis", "--states", "onehot"],
     &["--track", "incremental", "--states", "bitvec"],
     &["--track", "incremental", "--states", "enum", "--no-pruning"],
