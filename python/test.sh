@@ -21,8 +21,9 @@ install() {
   return 1
 }
 
-say "format"
+say "format, lints"
 cargo fmt --check
+cargo clippy --locked -- -D warnings
 
 say "wheel"
 python3 -m venv "$work/build"
