@@ -25,7 +25,7 @@ const KINDS: &[&[&str]] = &[
     &["--quantifiers", "keep", "--states", "onehot", "--no-pruning"],
     &["--quantifiers", "keep", "--states", "enum", "--no-pruning", "--no-comments"],
     &["--quantifiers", "expand", "--states", "onehot", "--no-pruning"],
-    &["--quantifiers", "expand", "--states", "int", "--pruning", "none"],
+    &["--track", "model", "--states", "onehot", "--quantifiers", "expand", "--pruning", "none"],
     &["--quantifiers", "cegis", "--states", "onehot"],
     &["--track", "incremental", "--states", "bitvec"],
     &["--track", "incremental", "--states", "enum", "--no-pruning"],
