@@ -283,14 +283,16 @@ def load(
 ) -> Problem:
     """Reads a problem file; or models and formulas of other tools, with the number of steps and the semantics with which these
     are read."""
-    if more or bound is not None:
+    if semantics is not None and bound is None:
+        raise ValueError("semantics are for a bound: they say what holds beyond it")
+    if more or bound is not None or dialect is not None:
         return Problem(_native.Problem.load_foreign([path, *more], bound, semantics, dialect))
     return Problem(_native.Problem.load(path), file=FilePath(path))
 
 
 def _number(value: Number) -> str:
     """As the problem language has it; a decimal number stands for the shortest fraction that reads as it."""
-    return str(Fraction(repr(value))) if isinstance(value, float) else str(value)
+    return str(Fraction(repr(float(value)))) if isinstance(value, float) else str(value)
 
 
 def _options(

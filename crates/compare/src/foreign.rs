@@ -7,7 +7,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use roxmltree::{Document, Node, ParsingOptions};
-use serde::Deserialize;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer};
 use sha2::{Digest as _, Sha256};
 
 use crate::record::{Answer, Limit, Record, RunStatus};
@@ -226,10 +227,19 @@ struct PublishedRun {
     file: PublishedFile,
     solver: String,
     result: String,
+    #[serde(deserialize_with = "amount")]
     cpu_time: f64,
+    #[serde(deserialize_with = "amount")]
     wallclock_time: f64,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "amount")]
     memory_usage: f64,
+}
+
+/// A time, or an amount of memory.
+fn amount<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    let number = f64::deserialize(from)?;
+    let fits = number.is_finite() && number >= 0.0;
+    if fits { Ok(number) } else { Err(D::Error::custom(format_args!("{number} is no time, and no memory"))) }
 }
 
 #[derive(Deserialize)]
@@ -281,12 +291,12 @@ struct Pair {
     configuration: String,
     #[serde(default)]
     status: String,
-    #[serde(rename = "cpu time")]
+    #[serde(rename = "cpu time", deserialize_with = "amount")]
     cpu_time: f64,
-    #[serde(rename = "wallclock time")]
+    #[serde(rename = "wallclock time", deserialize_with = "amount")]
     wallclock_time: f64,
     /// In kB.
-    #[serde(rename = "memory usage", default)]
+    #[serde(rename = "memory usage", default, deserialize_with = "amount")]
     memory_usage: f64,
     result: String,
     #[serde(default)]

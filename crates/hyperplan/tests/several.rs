@@ -2,6 +2,8 @@
 
 mod common;
 
+#[cfg(unix)]
+use common::fakes::Fake;
 use common::{hyperplan, text};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
@@ -209,4 +211,30 @@ fn certificates() {
         std::fs::write(&file, certificate.to_string()).expect("written");
         assert_eq!(hyperplan(&["certify", WAYS, proof]).status, 2, "{options:?}");
     }
+}
+
+/// A solver that works, and then does not.
+#[test]
+#[cfg(unix)]
+fn what_was_found_stays_if_others_cannot_be_looked_for() {
+    if std::process::Command::new("z3").arg("-version").output().is_err() {
+        return;
+    }
+    let fake = Fake::new(r#"[ "$(wc -l < "$(dirname "$0")/pids")" -gt 1 ] && exit 3; exec z3 -in"#);
+    let solver = format!("'{}'", fake.program().display());
+    let saved = fake.folder().join("saved.json");
+    let run =
+        solve(&["way", "--first", "--all", "3", "--solver", &solver, "--save", text(&saved), "--quiet"]);
+    assert_eq!(run.status, 4, "{}{}", run.stdout, run.stderr);
+    assert!(run.stdout.starts_with("way: realizable"), "{}", run.stdout);
+    assert!(run.stderr.contains("ended without an answer"), "{}", run.stderr);
+    assert!(saved.exists(), "it is saved");
+}
+
+#[test]
+fn why_it_is_not_known_whether_there_are_others_is_said() {
+    let run = solve(&["way", "--all", "40", "--timeout", "0.000001", "--format", "json"]);
+    let answer = &run.json()[0];
+    assert_eq!(run.status, 3, "{}", run.stderr);
+    assert_eq!(answer["reason_code"], "timeout", "{answer}");
 }

@@ -119,6 +119,16 @@ fn what_is_damaged_is_refused_with_its_line() {
     let without = XML.replace("1.25s", "soon");
     assert_eq!(refused("a.xml", &without), "line 5: the run has no walltime");
     assert!(refused("a.json", "{\"results\": [{}]}").contains("missing field"));
+    let head = "benchmark,solver,status,cpu time,wallclock time,result\n";
+    for time in ["nan", "-5", "inf"] {
+        let said = refused("a.csv", &format!("{head}a,z3,complete,1,{time},sat\n"));
+        assert!(said.contains("is no time, and no memory") && said.contains("line: 2"), "{said}");
+        let said = refused("a.csv", &format!("{head}a,z3,complete,{time},1,sat\n"));
+        assert!(said.contains("is no time, and no memory"), "{said}");
+    }
+    let run = r#"{"results": [{"solver": "z3", "result": "sat", "cpu_time": -1, "wallclock_time": 1,
+        "file": {"logic": "UF", "name": "a"}}]}"#;
+    assert!(refused("a.json", run).contains("-1 is no time, and no memory"));
     assert!(refused("a.csv", "a,b\n1,2\n").contains("missing field `benchmark`"));
     assert!(matches!(read(Path::new("a.csv"), b"\xff"), Err(ForeignError::Encoding)));
 }

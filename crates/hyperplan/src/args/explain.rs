@@ -19,7 +19,7 @@ pub(crate) struct Explain {
     pub(crate) solver: String,
     /// Writes certificates into this folder, for `hyperplan certify`: that there is no strategy, that the parts shown exclude
     /// each other, that so much more time does not help
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["strategy", "actions"])]
     pub(crate) proof: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) selection: Selection,

@@ -13,7 +13,7 @@ use hyperplan_plan::explain::{Explanation, explain, longer};
 use hyperplan_plan::{self as plan, EmitConfig, Emitted, Least, MinimizeError};
 use hyperplan_problem::answer::{StrategyFile, Verdict, WitnessPath, plans, to_strategy, to_witness};
 use hyperplan_problem::{self as typed, Strategy, Value};
-use hyperplan_solver::PrintedModel;
+use hyperplan_solver::{Deadline, PrintedModel};
 use hyperplan_verify::{Budget, Check, Defeat, check, complete};
 use std::ops::RangeInclusive;
 use std::time::Instant;
@@ -175,8 +175,8 @@ impl<'p> Objective<'p> {
         let start = Instant::now();
         let wrong = |why| Error::Constant { name: constant.to_owned(), why };
         let parsed = self.problem.source.parsed().ok_or_else(|| wrong("files of other tools have none"))?;
-        let range = self.range(&parsed, constant, range)?;
         let config = options.config();
+        let range = self.range(&parsed, constant, range, &config.deadline)?;
         let mut problem_of =
             |value: i64| self.problem.with(constant, value).map(|problem| (*problem.typed).clone());
         let found =
@@ -206,6 +206,7 @@ impl<'p> Objective<'p> {
         parsed: &Parsed<'_>,
         constant: &str,
         range: Option<RangeInclusive<i64>>,
+        deadline: &Deadline,
     ) -> Result<RangeInclusive<i64>, Error> {
         let wrong = |why| Error::Constant { name: constant.to_owned(), why };
         let known = self.problem.constants().iter().find(|(name, _)| name == constant);
@@ -224,7 +225,9 @@ impl<'p> Objective<'p> {
                 // Such as 0 in `[1,T]`. Its own value has no errors, so there is such a value.
                 let with = |value: &i64| self.problem.overrides.clone().with(constant, value);
                 let fits = |value: &i64| !parsed.lower(&with(value)).0.has_errors();
-                Ok((0..value).find(fits).unwrap_or(value)..=value)
+                // Where the time is up before one is found, the search says so.
+                let least = (0..value).take_while(|_| !deadline.passed()).find(fits);
+                Ok(least.unwrap_or(value)..=value)
             }
         }
     }

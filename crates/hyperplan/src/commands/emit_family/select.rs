@@ -4,6 +4,7 @@ use crate::args;
 use crate::commands::compare::{self, Measure};
 use crate::failure::{Exit, Failure, Result};
 use crate::files::{cannot_write, reason};
+use crate::guard;
 use crate::output::Output;
 use crate::proof::{DESCRIPTION, REFUTATION};
 use crate::store::write_whole;
@@ -70,6 +71,7 @@ pub(super) fn run(
             jobs: wanted.jobs.and_then(|jobs| u16::try_from(jobs.get()).ok()).unwrap_or(1),
             folder: folder.join(MEASURED),
         };
+        guard::doing("measuring benchmarks");
         let status = compare::measure(measure, verbose, out)?;
         if status == Exit::Undecided {
             return Ok(status);
@@ -92,9 +94,14 @@ pub(super) fn run(
     let possible = most(&candidates, &criteria);
     let selection = select(candidates, &criteria);
     if possible < count {
-        let mut failure = Failure::input(format_args!(
-            "--select {count}: only {possible} of the {all} benchmarks can be chosen; take --select {possible}, or make more"
-        ));
+        let mut failure = Failure::input(match possible {
+            0 => format!(
+                "--select {count}: none of the {all} benchmarks can be chosen; make larger ones, or see --easy"
+            ),
+            _ => format!(
+                "--select {count}: only {possible} of the {all} benchmarks can be chosen; take --select {possible}, or make more"
+            ),
+        });
         let reasons = selection.left_out.iter().map(|(why, number)| format!("{number} not, since {why}"));
         failure.details = reasons.collect::<Vec<_>>().join("\n");
         return Err(failure);

@@ -17,10 +17,12 @@ use hyperplan_outlet::one_line;
 use hyperplan_plan as plan;
 use hyperplan_problem::answer::plans::PlanFormat;
 use hyperplan_problem::answer::{
-    Answer, Case, CostValue, More, Other, Seconds, Several, Size, Verdict, Verified, WitnessPath, to_witness,
+    Answer, Below, Case, CostValue, More, Other, Seconds, Several, Size, Verdict, Verified, WitnessPath,
+    to_witness,
 };
 use hyperplan_problem::{Objective, Quantifier, Strategy};
 use hyperplan_render::Scene;
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -140,16 +142,21 @@ impl<'a> Found<'a> {
         match several.more {
             More::None => format!("{found}, and there are no others"),
             More::Unasked => found,
-            More::Unknown => format!("{found}; whether there are others is unknown"),
+            More::Unknown => {
+                let why = self.answer.reason.iter().map(|reason| format!(": {}", one_line(reason)));
+                format!("{found}; whether there are others is unknown{}", why.collect::<String>())
+            }
         }
     }
 
     fn verdict(&self) -> String {
         if let Some(searched) = self.searched {
             let words = format!("{}: {}", self.objective.name, one_line(&searched.words));
-            return match self.answer.costs.is_empty() {
-                true => words,
-                false => format!("{words}; with {}", self.costs()),
+            let known = searched.minimized.below != Below::Unknown;
+            return match (self.answer.costs.is_empty(), self.reason().filter(|_| known)) {
+                (true, None) => words,
+                (true, Some(why)) => format!("{words}; what is preferred is unknown: {why}"),
+                (false, _) => format!("{words}; with {}", self.costs()),
             };
         }
         // Users of verifiers have words of their own.
@@ -166,17 +173,22 @@ impl<'a> Found<'a> {
         if !self.answer.costs.is_empty() {
             return format!("{}: {verdict} with {}", self.objective.name, self.costs());
         }
-        match &self.answer.reason {
-            Some(reason) => format!("{}: {verdict}: {}", self.objective.name, one_line(reason)),
+        match self.reason() {
+            Some(why) => format!("{}: {verdict}: {why}", self.objective.name),
             None => format!("{}: {verdict}", self.objective.name),
         }
+    }
+
+    /// Why the answer is not all that was asked for, but for what is told of others.
+    fn reason(&self) -> Option<Cow<'_, str>> {
+        let others = self.answer.several.as_ref().is_some_and(|several| several.more == More::Unknown);
+        self.answer.reason.as_ref().filter(|_| !others).map(|reason| one_line(reason))
     }
 
     /// What the strategy costs, and whether that is the least.
     fn costs(&self) -> String {
         let all: Vec<String> = self.answer.costs.iter().map(cost_text).collect();
-        let why = self.answer.reason.iter().map(|reason| format!(": {}", one_line(reason)));
-        all.join("; ") + &why.collect::<String>()
+        all.join("; ") + &self.reason().map(|why| format!(": {why}")).unwrap_or_default()
     }
 
     fn text(&self, verbose: bool, color: bool) -> String {

@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use crate::load::Loaded;
 use crate::wish::Wish;
 use hyperplan::search::cost_values;
-use hyperplan_plan::{self as plan, Another, Wanted};
+use hyperplan_plan::{self as plan, Another, Reason, Wanted};
 use hyperplan_problem::answer::{Answer, More, Other, ReasonCode, Several, to_witness};
 use hyperplan_problem::{Objective, Strategy, Target};
 
@@ -96,14 +96,13 @@ pub(super) fn others(
     Ok(())
 }
 
-/// The others as answers tell them, and as they are.
+/// The others as answers tell them, and as they are; and why it is not known whether there are more.
 pub(super) fn told(
     (loaded, objective): (&Loaded, &Objective),
     args: &args::Solve,
     answer: &Answer,
-    several: Option<plan::Several>,
-) -> (Option<Several>, Vec<Strategy>) {
-    let Some(plan::Several { others, more }) = several else { return (None, Vec::new()) };
+    plan::Several { others, more }: plan::Several,
+) -> (Several, Vec<Strategy>, Option<Reason>) {
     let mut strategies = Vec::new();
     let mut told = Vec::new();
     for Another { outcome, values } in others {
@@ -118,11 +117,11 @@ pub(super) fn told(
         told.push(Other { witness, verified: outcome.verified, costs });
         strategies.push(strategy);
     }
-    let more = match more {
-        plan::More::None => More::None,
-        plan::More::Unasked => More::Unasked,
-        plan::More::Unknown(_) => More::Unknown,
+    let (more, why) = match more {
+        plan::More::None => (More::None, None),
+        plan::More::Unasked => (More::Unasked, None),
+        plan::More::Unknown(reason) => (More::Unknown, Some(reason)),
     };
     let wanted = args.all.unwrap_or(1).into();
-    (Some(Several { differ: args.differ, wanted, more, others: told }), strategies)
+    (Several { differ: args.differ, wanted, more, others: told }, strategies, why)
 }

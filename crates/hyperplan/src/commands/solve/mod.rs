@@ -48,10 +48,14 @@ pub(crate) fn run(args: &args::Solve, verbose: bool, quiet: bool, out: &mut Outp
         }
         let start = Instant::now();
         match watched(&loaded, objective, &wish, args, (&config.plan, explain, verbose), out) {
-            Ok(solved) => {
+            Ok((solved, failure)) => {
                 guard::doing("telling what was found");
                 let total = loaded.time + start.elapsed();
                 asked.tell((&loaded, objective, index), (solved, total), picture.as_ref(), &mut told, out)?;
+                if let Some(failure) = failure {
+                    out.failure(&failure);
+                    told.worst = told.worst.max(failure.status);
+                }
             }
             Err((failure, reason_code)) => {
                 // The other objectives may do better.
@@ -113,8 +117,15 @@ impl Asked<'_> {
         let why = own.as_ref().or_else(|| searched?.undecided.as_ref());
         let mut answer = answer(loaded, objective, &outcome, (searched, open.costs), why, total);
         answer.case = args.cube.map(|part| case(part, objective));
-        let (several, others) = further::told((loaded, objective), args, &answer, several);
+        let told_of = |several| further::told((loaded, objective), args, &answer, several);
+        let (several, others, open) = several.map_or((None, Vec::new(), None), |several| {
+            let (several, others, open) = told_of(several);
+            (Some(several), others, open)
+        });
         answer.several = several;
+        if let Some(why) = open.map(|reason| Why::new(&reason, explain)).filter(|_| answer.reason.is_none()) {
+            (answer.reason, answer.reason_code) = (Some(why.words), Some(why.code));
+        }
         let about = (loaded, objective);
         let certified = certify(args, config, (&mut answer, &outcome), self.wish, about, out);
         told.worst = told.worst.max(certified);
@@ -158,7 +169,8 @@ fn case(part: Part, objective: &Objective) -> Case {
     Case { index: number(part.index + 1), of: number(part.of), decides: lanes::decides(objective) }
 }
 
-/// As [`solve`], saying how far it is where that takes long.
+/// As [`solve`], with what is preferred and others that differ, saying how far it is where that takes long; also what failed after
+/// something was found.
 fn watched(
     loaded: &Loaded,
     objective: &Objective,
@@ -166,7 +178,7 @@ fn watched(
     args: &args::Solve,
     (config, explain, verbose): (&plan::Config, Explain<'_>, bool),
     out: &Output,
-) -> Result<Solved, (Failure, ReasonCode)> {
+) -> Result<(Solved, Option<Failure>), (Failure, ReasonCode)> {
     if matches!(wish.smallest, Smallest::Constant(_)) && !objective.minimize.is_empty() {
         let name = &objective.name;
         out.remark(format_args!("note: {name}: its own `minimize` is left aside for `--minimize`"));
@@ -177,9 +189,11 @@ fn watched(
     let _waiting = Waiting::begin(&own.watch, verbose, out);
     let team = Team { args, config: &own, out };
     let mut solved = solve(loaded, objective, wish, &team, explain)?;
-    further::prefer((loaded, objective), wish, &team, explain, &mut solved)?;
-    further::others((loaded, objective), wish, &team, explain, &mut solved)?;
-    Ok(solved)
+    // What fails from now on takes nothing from what was found.
+    let further = further::prefer((loaded, objective), wish, &team, explain, &mut solved);
+    let further =
+        further.and_then(|()| further::others((loaded, objective), wish, &team, explain, &mut solved));
+    Ok((solved, further.err().map(|(failure, _)| failure)))
 }
 
 /// Certifies what is said to be impossible, if that is wanted. An answer without a certificate is an answer all the same,
@@ -385,6 +399,8 @@ fn status(answer: &Answer) -> Exit {
         // A value that need not be the least is not what was asked for.
         _ if answer.minimized.as_ref().is_some_and(|m| m.below == Below::Unknown) => Exit::Undecided,
         _ if answer.costs.iter().any(|cost| cost.least < cost.value) => Exit::Undecided,
+        // Nor is one of which it is not known whether it is preferred.
+        _ if answer.minimized.is_some() && answer.reason.is_some() => Exit::Undecided,
         // Neither are fewer strategies than there may be.
         _ if answer.several.as_ref().is_some_and(|several| several.more == More::Unknown) => Exit::Undecided,
         Verdict::Realizable => Exit::Good,
