@@ -257,3 +257,18 @@ fn too_much_memory_is_undecided() {
     expect_of(&Fake::replying(cases), &memory, 3, &["sp: unknown: out of memory"]);
     expect("echo '(error \"out of memory\")'", 3, &["sp: unknown: out of memory"]);
 }
+
+/// What is called `minisat` says that all variables are true: of an enumeration, that is more than there are values.
+#[test]
+fn assignments_that_are_no_values_are_refused() {
+    let all =
+        "n=$(sed -n 's/^p cnf \\([0-9]*\\) .*/\\1/p' \"$1\"); { echo SAT; seq -s ' ' $n; echo 0; } > \"$2\"
+        echo SATISFIABLE; echo v $(seq -s ' ' $n) 0; exit 10";
+    let fake = Fake::called("minisat", all);
+    let arguments = ["solve", "pass/costs.hp", "--objective", "none_cheaper", "--solver", "minisat"];
+    let mut command = command(&[&arguments[..], &["--states", "enum", "--quantifiers", "expand"]].concat());
+    command.env("HYPERPLAN_MINISAT", fake.program()).env("TMPDIR", fake.temporary());
+    let run = Run::new(command.output().expect("the command was built"));
+    assert_eq!(run.status, 4, "{}{}", run.stdout, run.stderr);
+    assert!(run.stderr.contains("minisat"), "{}", run.stderr);
+}

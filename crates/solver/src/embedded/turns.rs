@@ -2,7 +2,8 @@
 //!
 //! A dialogue has many queries, and most are easy. At these `BatSat` is ahead, because it simplifies nothing; of those that are
 //! hard `CaDiCaL` decides more. Which is which cannot be told from the query. So each has a turn, longer every time, and who
-//! answered last begins: a query takes about twice what the better one needs, at most. `docs/performance.md` compares them.
+//! answered last begins: a query takes at most about three times the effort that the better one needs.
+//! `docs/performance.md` compares them.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -32,6 +32,16 @@ impl Heard {
         }
     }
 
+    /// Forgets literals of variables that there are not, and those heard twice, once they are many: a program that never ends
+    /// fills no memory.
+    pub(super) fn within(&mut self, variables: usize) {
+        if self.literals.len() > 4 * variables + 64 {
+            self.literals.retain(|literal| literal.unsigned_abs() as usize <= variables);
+            self.literals.sort_unstable();
+            self.literals.dedup();
+        }
+    }
+
     /// Takes the exit status, where nothing else was said.
     pub(super) fn exit(&mut self, status: &str) -> Result<(), ()> {
         match status.rsplit(' ').next() {
@@ -121,5 +131,16 @@ mod tests {
     fn contradictions() {
         assert_eq!(heard("s cnf 1 3 3", "exit status: 20"), Err(()));
         assert_eq!(heard("s SATISFIABLE\ns UNSATISFIABLE", ""), Err(()));
+    }
+
+    #[test]
+    fn what_does_not_end_fills_no_memory() {
+        let mut heard = Heard::default();
+        for _ in 0..10_000 {
+            heard.line("v 1 -2 3 4 5 6 7 8 9 4000000").expect("it contradicts nothing");
+            heard.within(3);
+        }
+        assert!(heard.literals.len() <= 4 * 3 + 64 + 10, "{}", heard.literals.len());
+        assert!(heard.literals.contains(&1) && heard.literals.contains(&-2));
     }
 }

@@ -49,7 +49,7 @@ impl Bits {
             let kept = keep_file(directory, "", name, ending, |to| to.write_all(&text));
             kept.map_err(|source| cannot_keep(directory, source))?;
         }
-        let heard = self.ask(text, deadline)?;
+        let heard = self.ask(text, query.variables(), deadline)?;
         let Some(heard) = heard else { return Ok(Answer::Unknown(deadline.reason())) };
         Ok(match heard.answer {
             Some(Some(true)) => {
@@ -72,8 +72,8 @@ impl Bits {
         })
     }
 
-    /// What the program says to a query; `None` at the deadline.
-    fn ask(&self, text: Vec<u8>, deadline: &Deadline) -> Result<Option<Heard>, Error> {
+    /// What the program says to a query of so many variables; `None` at the deadline.
+    fn ask(&self, text: Vec<u8>, variables: usize, deadline: &Deadline) -> Result<Option<Heard>, Error> {
         let file = self.program.takes_file().then(|| temporary(&[&text], self.format.name())).transpose();
         let file = file.map_err(|source| Error::Io {
             what: "cannot write the query to a file (TMPDIR says where)".to_owned(),
@@ -98,6 +98,7 @@ impl Bits {
                 Next::Ended => break,
                 Next::Reply(reply) => {
                     heard.line(reply.text()).map_err(|()| contradicts(reply.text()))?;
+                    heard.within(variables);
                     reply.text().clone_into(&mut last);
                 }
             }
@@ -137,9 +138,17 @@ impl Session for Bits {
         };
         let value = |symbol: &Term| {
             let known = query.value(&script.terms, symbol.positive(), |variable| is_true[variable as usize]);
-            known.unwrap_or_else(|| Value::default_of(script.terms.sort(*symbol)))
+            match known.unwrap_or_else(|| Value::default_of(script.terms.sort(*symbol))) {
+                // More bits than values: the query rules the rest out.
+                Value::Enum(enumeration, at) if at >= script.terms.constructors(enumeration) => Err(self
+                    .misunderstood(
+                        "an assignment",
+                        &format!("value {at} of {}", script.terms.sort(*symbol)),
+                    )),
+                value => Ok(value),
+            }
         };
-        let mut values: Vec<Value> = symbols.iter().map(value).collect();
+        let mut values: Vec<Value> = symbols.iter().map(value).collect::<Result<_, _>>()?;
         negate(&mut values, symbols);
         Ok(values)
     }

@@ -13,6 +13,7 @@ use super::profile::{FILE, Profile};
 use super::program::Program;
 use super::reply::{self, Meaning, Reply};
 use crate::deadline::Deadline;
+use crate::error::Unknown;
 use crate::propositional::Format;
 use crate::session::{Answer, Options, Quantifiers, Session as _};
 
@@ -74,7 +75,7 @@ pub(super) fn abilities(profile: &Arc<Profile>, program: &Path) -> Vec<(&'static
             return (question.ability.as_str(), Ability::Unable);
         }
         let (ability, in_time) = match profile.format {
-            Some(format) => (ask_in_bits(profile, program, format, question), true),
+            Some(format) => ask_in_bits(profile, program, format, question),
             None => ask(profile, program, question),
         };
         silent += usize::from(!in_time);
@@ -83,19 +84,24 @@ pub(super) fn abilities(profile: &Arc<Profile>, program: &Path) -> Vec<(&'static
     QUESTIONS.iter().map(ask).collect()
 }
 
-/// Asks one question of a program that gets files of bits: about one answer, and values.
-fn ask_in_bits(profile: &Arc<Profile>, program: &Path, format: Format, question: &Question) -> Ability {
+/// Asks one question of a program that gets files of bits: about one answer, and values; whether there was an answer in time.
+fn ask_in_bits(
+    profile: &Arc<Profile>,
+    program: &Path,
+    format: Format,
+    question: &Question,
+) -> (Ability, bool) {
     let quantified = !question.logic.starts_with("QF_");
     let text = format!("(set-logic {})\n{}", question.logic, question.text);
-    let Ok(benchmark) = read_script(&text) else { return Ability::Unable };
+    let Ok(benchmark) = read_script(&text) else { return (Ability::Unable, true) };
     let answers = question.expected.iter().filter(|said| matches!(said, Expected::Sat | Expected::Unsat));
     if quantified && profile.quantifiers == Quantifiers::None || answers.count() > 1 {
-        return Ability::Unable;
+        return (Ability::Unable, true);
     }
     let program = Program::at(program.to_owned(), profile, &Options::default());
     let mut session = Bits::new(program, format, &Options::default());
     let Ok(answer) = session.check(&benchmark.script, &[], &Deadline::after(PATIENCE)) else {
-        return Ability::Unable;
+        return (Ability::Unable, true);
     };
     for expected in &question.expected {
         let right = match expected {
@@ -105,15 +111,15 @@ fn ask_in_bits(profile: &Arc<Profile>, program: &Path, format: Format, question:
                 let values = session.values(&benchmark.script, &benchmark.symbols);
                 values.is_ok_and(|values| values == [Value::bv(*number, 4)])
             }
-            Expected::Integer(_) | Expected::Core(_) => return Ability::Unable,
+            Expected::Integer(_) | Expected::Core(_) => return (Ability::Unable, true),
         };
         match answer {
-            Answer::Unknown(_) => return Ability::Unable,
-            _ if !right => return Ability::Wrong(format!("it said {answer:?}")),
+            Answer::Unknown(why) => return (Ability::Unable, why != Unknown::Timeout),
+            _ if !right => return (Ability::Wrong(format!("it said {answer:?}")), true),
             _ => {}
         }
     }
-    Ability::Able
+    (Ability::Able, true)
 }
 
 /// Asks one question; whether there was an answer in time.

@@ -143,12 +143,6 @@ impl Propositional {
         Ok(Propositional { format, body, blocks, names, symbols: symbols.into_iter().collect(), variables })
     }
 
-    /// What it is written in.
-    #[must_use]
-    pub fn format(&self) -> Format {
-        self.format
-    }
-
     /// How many variables there are, those that stand for gates included.
     #[must_use]
     pub fn variables(&self) -> usize {
@@ -164,12 +158,6 @@ impl Propositional {
         }
     }
 
-    /// How many blocks of quantifiers stand in front.
-    #[must_use]
-    pub fn blocks(&self) -> usize {
-        self.blocks.len()
-    }
-
     /// Writes it. `about` are lines of comment; without `bare`, further ones say what each variable is.
     ///
     /// # Errors
@@ -183,7 +171,11 @@ impl Propositional {
         let mark = self.format.comment();
         let about = |w: &mut dyn Write| {
             comments.iter().try_for_each(|line| {
-                writeln!(w, "{}", format!("{mark} {}", one_line(line.trim_end())).trim_end())
+                // QDIMACS has no other characters than those of ASCII.
+                let ascii =
+                    |c: char| if c.is_ascii() { c.to_string() } else { c.escape_default().to_string() };
+                let line: String = one_line(line.trim_end()).chars().map(ascii).collect();
+                writeln!(w, "{}", format!("{mark} {line}").trim_end())
             })
         };
         match &self.body {
@@ -196,16 +188,16 @@ impl Propositional {
         w.flush()
     }
 
-    /// The value of a declared symbol under an assignment, which tells whether a variable is true; `None` for symbols that do not
+    /// The value of a declared symbol, not negated, under an assignment, which tells whether a variable is true; `None` for symbols that do not
     /// occur.
     pub fn value(&self, terms: &Terms, symbol: Term, is_true: impl Fn(u32) -> bool) -> Option<Value> {
-        let literals = self.symbols.get(&symbol.positive())?;
+        let literals = self.symbols.get(&symbol)?;
         let bit = |&literal: &Lit| is_true(literal.variable()) == (literal.number() > 0);
         let bits = literals.iter().enumerate().fold(0, |bits, (i, l)| bits | u128::from(bit(l)) << i);
         Some(match terms.sort(symbol) {
             Sort::BitVec(width) => Value::Bv { width, bits },
             Sort::Enum(enumeration) => Value::Enum(enumeration, bits as u32),
-            _ => Value::Bool((bits == 1) ^ symbol.is_negated()),
+            _ => Value::Bool(bits == 1),
         })
     }
 
