@@ -2,6 +2,7 @@
 
 import itertools
 import json
+import functools
 import os
 import random
 import signal
@@ -255,7 +256,11 @@ def test_progress_is_told():
 @pytest.mark.skipif(os.name != "posix", reason="signals are those of POSIX")
 def test_ctrl_c_ends_a_search():
     code = f"import hyperplan\nprint('begun', flush=True)\nhyperplan.Problem.from_text({HARD!r}).solve()"
-    running = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    # What a shell begins in the background ignores the signal, and so do its children, if they are not told otherwise.
+    heed = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    running = subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=heed
+    )
     assert running.stdout.readline().strip() == b"begun"
     time.sleep(0.7)
     assert running.poll() is None, "the search was to take longer"
