@@ -1,8 +1,8 @@
 """The package as it is installed: what is asked in Python is answered as the command answers it."""
 
+import functools
 import itertools
 import json
-import functools
 import os
 import random
 import signal
