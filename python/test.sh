@@ -41,7 +41,11 @@ cp -r tests "$work/tests"
 say "types"
 (cd "$work" && new/bin/python -m mypy --strict --disable-error-code import-untyped -p hyperplan)
 
-oldest=$(command -v python3.9 || ls "$HOME"/.pyenv/versions/3.9.*/bin/python 2>/dev/null | head -1 || true)
+# What is in the PATH may be a script that stands for a version which is not chosen.
+oldest=""
+for python in python3.9 "$HOME"/.pyenv/versions/3.9.*/bin/python; do
+  if "$python" -c "" 2>/dev/null; then oldest=$python; break; fi
+done
 if [ -n "$oldest" ] && "$oldest" -m venv "$work/old" 2>/dev/null; then
   say "tests on $("$oldest" --version)"
   install "$work/old/bin/pip" "$work"/dist/hyperplan-*.whl numpy networkx pytest
