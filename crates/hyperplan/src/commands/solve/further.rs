@@ -101,8 +101,9 @@ pub(super) fn told(
     (loaded, objective): (&Loaded, &Objective),
     args: &args::Solve,
     answer: &Answer,
-    plan::Several { others, more }: plan::Several,
-) -> (Several, Vec<Strategy>, Option<Reason>) {
+    several: Option<plan::Several>,
+) -> (Option<Several>, Vec<Strategy>, Option<Reason>) {
+    let Some(plan::Several { others, more }) = several else { return (None, Vec::new(), None) };
     let mut strategies = Vec::new();
     let mut told = Vec::new();
     for Another { outcome, values } in others {
@@ -123,5 +124,5 @@ pub(super) fn told(
         plan::More::Unknown(reason) => (More::Unknown, Some(reason)),
     };
     let wanted = args.all.unwrap_or(1).into();
-    (Several { differ: args.differ, wanted, more, others: told }, strategies, why)
+    (Some(Several { differ: args.differ, wanted, more, others: told }), strategies, why)
 }

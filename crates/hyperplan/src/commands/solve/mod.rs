@@ -117,11 +117,7 @@ impl Asked<'_> {
         let why = own.as_ref().or_else(|| searched?.undecided.as_ref());
         let mut answer = answer(loaded, objective, &outcome, (searched, open.costs), why, total);
         answer.case = args.cube.map(|part| case(part, objective));
-        let told_of = |several| further::told((loaded, objective), args, &answer, several);
-        let (several, others, open) = several.map_or((None, Vec::new(), None), |several| {
-            let (several, others, open) = told_of(several);
-            (Some(several), others, open)
-        });
+        let (several, others, open) = further::told((loaded, objective), args, &answer, several);
         answer.several = several;
         if let Some(why) = open.map(|reason| Why::new(&reason, explain)).filter(|_| answer.reason.is_none()) {
             (answer.reason, answer.reason_code) = (Some(why.words), Some(why.code));
