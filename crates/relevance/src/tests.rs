@@ -126,6 +126,27 @@ proptest! {
         }
     }
 
+    /// One run is found where there is one within the slack, and satisfies what is read of it alone.
+    #[test]
+    fn one_run_is_a_run(
+        system in system(),
+        formula in formula(&["p"]),
+        slack in prop::option::of(0..3u32),
+    ) {
+        let problem = objective(&system, "exists p.", &formula);
+        let arena = arena(&problem);
+        let goal = Goal::new(&arena.task.objective.formula, true);
+        let find = |one_run| leading(&arena, &[P], &goal, Narrowing { slack, one_run }).expect("it is small");
+        let (one, all) = (find(true), find(false));
+        prop_assert_eq!(one.is_hopeless(), all.is_hopeless());
+        let kept = layers(&mut Relevance::new(&arena, vec![None], one), P, &goal);
+        if !kept.is_empty() && kept.at.iter().all(|states| states.len() == 1) {
+            // Layers say where it is, not which action it takes.
+            let holds = |p: &Trace| holds(arena.task.problem, arena.task.objective, &[p]);
+            prop_assert!(runs(&arena, P).iter().any(|(p, run)| within(run, &kept) && holds(p)));
+        }
+    }
+
     /// With games where the two are tied. A path that wins against all others is kept, and makes no move that the game
     /// has closed; beside a path that is kept, all that defeat it are.
     #[test]

@@ -3,8 +3,8 @@
 use super::Belief;
 use super::distance::Distances;
 use super::joint::{Numbers, States, joint};
+use super::presence::Presence;
 use super::untimed::{Goals, Untimed};
-use crate::layers::Layers;
 use crate::reach::{Place, Product, Question};
 use crate::residual::{FALSE, Residual, TRUE};
 use crate::task::Error;
@@ -75,7 +75,8 @@ pub(super) struct Chances<'a, const N: usize> {
     graphs: [&'a Graph; N],
     wish: Wish,
     leading: usize,
-    layers: Vec<Layers>,
+    /// When each path can matter where.
+    present: Vec<Presence>,
     /// Atoms that read the leading paths.
     reading_leads: u64,
     leads: Numbers<(States<N>, Residual)>,
@@ -107,7 +108,7 @@ impl<'a, const N: usize> Chances<'a, N> {
         own: &'a Question<'a, N>,
         (wish, rest): (Wish, &'a Question<'a, N>),
         leading: usize,
-        layers: Vec<Layers>,
+        present: Vec<Presence>,
     ) -> Option<Self> {
         let (own, rest) = (Product::new(own), Product::new(rest));
         let end = own.question.arena.task.end();
@@ -119,7 +120,7 @@ impl<'a, const N: usize> Chances<'a, N> {
             rest,
             wish,
             leading,
-            layers,
+            present,
             leads: Numbers::new(),
             moves: Numbers::new(),
             others: Numbers::new(),
@@ -149,7 +150,7 @@ impl<'a, const N: usize> Chances<'a, N> {
     /// Whether a path can be in a state at a time: it can go on, and it matters.
     fn matters(&self, at: usize, state: StateIx, time: u32) -> bool {
         let lasts = self.question().arena.task.lasts(self.graphs[at], state, time);
-        lasts && self.layers[at].at.get(time as usize).is_none_or(|layer| layer.binary_search(&state).is_ok())
+        lasts && self.present[at].allows(state, time)
     }
 
     /// Where the leading paths can begin, each with the chances that there are then, unless they lose at once; `None` where more
@@ -340,7 +341,7 @@ impl<'a, const N: usize> Chances<'a, N> {
             all.extend(belief.is_empty().then_some((lead, None)));
         }
         let goals = Goals { own: &mut self.own, rest: &mut self.rest };
-        self.untimed = Some(Untimed::new(goals, self.leading, &self.layers, &all, budget)?);
+        self.untimed = Some(Untimed::new(goals, self.leading, &self.present, &all, budget)?);
         let loses = |chances: &mut Self, (lead, belief): &Start| match belief.as_slice() {
             [] => chances.lasts(*lead, None, 0) > chances.end,
             belief => belief.iter().any(|&chance| chances.lasts(*lead, Some(chance), 0) > chances.end),

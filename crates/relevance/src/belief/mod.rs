@@ -23,6 +23,7 @@ mod beam;
 mod chances;
 mod distance;
 mod joint;
+mod presence;
 mod response;
 mod search;
 mod untimed;
@@ -34,6 +35,7 @@ use crate::task::{Arena, Error};
 use chances::{Chances, Wish};
 use hyperplan_problem::PathId;
 use hyperplan_space::Run;
+use presence::Presence;
 use rustc_hash::FxHashMap;
 use search::Search;
 
@@ -74,6 +76,7 @@ pub fn believe(
     goal: &Goal,
     budget: usize,
 ) -> Result<Belief<Vec<Run>>, Error> {
+    arena.task.go_on()?;
     let paths: Vec<PathId> = arena.task.objective.paths.keys().collect();
     match *paths.as_slice() {
         [p, q] => narrowed(arena, [p, q], leading, goal, budget),
@@ -126,22 +129,31 @@ fn narrowed<const N: usize>(
         ceiling: None,
         budget: arena.task.limits.pairs,
     };
+    let (asked, rest, against) = (question(&own, None), question(&rest, None), question(&other, None));
+    let wants = |at: usize| if at < leading { goal } else { &other };
+    let present = |wish, present: Vec<Presence>| {
+        let rest = if wish == Wish::Leading { &rest } else { &against };
+        Chances::new(&asked, (wish, rest), leading, present)
+    };
+    // Bounds on what is left to do are soon found, and most often they are all that the first beam needs.
+    if let Some(bounds) = bounds(&question, &wants) {
+        let Some(mut all) = present(Wish::Leading, bounds) else { return Ok(Belief::Unfit) };
+        let answer = beam::search(&mut all, NARROW, budget / 2)?;
+        if !matches!(answer, Belief::Open) {
+            return Ok(answer);
+        }
+    }
     let alone = |at: usize, slack| {
         if !arena.task.limits.prunes() {
             return Ok(Explored { layers: [Layers { at: Vec::new() }], lossy: false });
         }
-        let wants = question(if at < leading { goal } else { &other }, slack);
-        reach::layers(&wants.about([paths[at]]))
+        reach::layers(&question(wants(at), slack).about([paths[at]]))
     };
-    let others: Vec<Layers> = (leading..N)
-        .map(|at| alone(at, None).map(|Explored { layers: [layers], .. }| layers))
-        .collect::<Result<_, _>>()?;
-    let (own, rest, against) = (question(&own, None), question(&rest, None), question(&other, None));
+    let others = (leading..N).map(|at| alone(at, None)).collect::<Result<Vec<_>, Error>>()?;
     let leads = |slack| (0..leading).map(|at| alone(at, slack)).collect::<Result<Vec<_>, Error>>();
     let among = |wish, leads: &[Explored<1>]| {
-        let leads = leads.iter().map(|Explored { layers: [layers], .. }| layers);
-        let rest = if wish == Wish::Leading { &rest } else { &against };
-        Chances::new(&own, (wish, rest), leading, leads.chain(&others).cloned().collect())
+        let all = leads.iter().chain(&others);
+        present(wish, all.map(|Explored { layers: [layers], .. }| Presence::Layers(layers.clone())).collect())
     };
     let any = leads(None)?;
     let Some(mut all) = among(Wish::Leading, &any) else { return Ok(Belief::Unfit) };
@@ -158,6 +170,20 @@ fn narrowed<const N: usize>(
     }
     let budget = all.work.saturating_add(budget);
     Search::new(&mut all, budget).run()
+}
+
+/// When paths can matter where by a bound for each; `None` where there is none for some, or states are not to be pruned.
+fn bounds<'q, const N: usize>(
+    question: &impl Fn(&'q Goal, Option<u32>) -> Question<'q, N>,
+    wants: &impl Fn(usize) -> &'q Goal,
+) -> Option<Vec<Presence>> {
+    let until = |at: usize| {
+        let question = question(wants(at), None);
+        let prunes = question.arena.task.limits.prunes();
+        let until = || reach::until(&question.about([question.paths[at]]));
+        prunes.then(until).flatten().map(Presence::Until)
+    };
+    (0..N).map(until).collect()
 }
 
 /// Looks for a strategy where it is most likely, and between that for reasons that there is none.

@@ -15,7 +15,7 @@
 //! that.
 
 use super::joint::{Numbers, States, joint};
-use crate::layers::Layers;
+use super::presence::Presence;
 use crate::reach::{Bits, Place, Product};
 use crate::residual::{FALSE, Residual, TRUE};
 use crate::task::Error;
@@ -134,12 +134,12 @@ pub(super) struct Goals<'s, 'a, const N: usize> {
 }
 
 impl<const N: usize> Untimed<N> {
-    /// From these starts on, each the places of all paths. `layers` are those of all paths. What is beyond `budget` steps is taken to be
+    /// From these starts on, each the places of all paths. `present` is when each path can matter where. What is beyond `budget` steps is taken to be
     /// over at once.
     pub(super) fn new(
         mut goals: Goals<'_, '_, N>,
         leading: usize,
-        layers: &[Layers],
+        present: &[Presence],
         starts: &[(Half<N>, Option<Half<N>>)],
         budget: usize,
     ) -> Result<Self, Error> {
@@ -151,10 +151,10 @@ impl<const N: usize> Untimed<N> {
             steps: Vec::new(),
         };
         let end = goals.own.question.arena.task.end();
-        let each = layers.iter().zip(goals.rest.graphs);
-        let last = each.map(|(layers, graph)| latest(layers, graph.len(), end));
+        let each = present.iter().zip(goals.rest.graphs);
+        let until = each.map(|(present, graph)| present.until(graph.len(), end));
         let mut search = Search {
-            last: last.collect(),
+            until: until.collect(),
             untimed,
             leading,
             lead_moves: Vec::new(),
@@ -194,25 +194,11 @@ impl<const N: usize> Untimed<N> {
     }
 }
 
-/// The last time at which each state can matter, plus one; of what is beyond the layers nothing is known.
-fn latest(layers: &Layers, states: usize, end: u32) -> Vec<u32> {
-    if layers.at.len() <= end as usize {
-        return vec![u32::MAX; states];
-    }
-    let mut last = vec![0; states];
-    for (time, layer) in (1..).zip(&layers.at) {
-        for &state in layer {
-            last[state as usize] = time;
-        }
-    }
-    last
-}
-
 struct Search<const N: usize> {
     untimed: Untimed<N>,
     leading: usize,
-    /// By path and state: the last time at which it can matter, plus one.
-    last: Vec<Vec<u32>>,
+    /// By path and state: the first time from which on it cannot matter any more.
+    until: Vec<Vec<u32>>,
     /// By half of the leading paths: the places that a move enters, and the half after it.
     lead_moves: Vec<Option<Rc<[Step<N>]>>>,
     /// What became of the chance that is looked at: many steps are alike.
@@ -264,7 +250,7 @@ impl<const N: usize> Search<N> {
         self.recent.clear();
         for (places, to) in self.moves_of(goals, lead).iter() {
             let leading = 0..self.leading;
-            if !leading.clone().all(|at| self.last[at][places[at].0 as usize] > time) {
+            if !leading.clone().all(|at| self.until[at][places[at].0 as usize] > time) {
                 continue;
             }
             found.clear();
@@ -326,7 +312,7 @@ impl<const N: usize> Search<N> {
             let allowed = |at: usize| {
                 let state = places[at].0;
                 // Where a path does not matter any more it does no harm.
-                self.last[at][state as usize] > time
+                self.until[at][state as usize] > time
                     && rest.question.arena.task.lasts(rest.graphs[at], state, time)
             };
             if !(self.leading..N).all(allowed) {

@@ -33,6 +33,8 @@ pub(crate) struct Bound {
     /// Steps to where nothing is owed, and to where the settling atoms do no harm; by residual and state. Zero where
     /// nothing is known.
     steps: Vec<Vec<[u32; 2]>>,
+    /// The states that can be reached, each with a row.
+    nodes: Vec<Node>,
     /// The rows of residuals met along the exploration, by position after a time. The time matters only before the
     /// settling atoms have settled.
     met: FxHashMap<(Residual, u32), Option<usize>>,
@@ -53,6 +55,7 @@ impl Bound {
             residuals: Vec::new(),
             rows: FxHashMap::default(),
             steps: Vec::new(),
+            nodes: Vec::new(),
             met: FxHashMap::default(),
             least: NEVER,
             end: product.question.arena.task.end(),
@@ -61,6 +64,8 @@ impl Bound {
         let mut search = Search { graph, bound: &mut bound, nodes: Vec::new(), edges: Vec::new() };
         let starts = search.explore(product).ok()?;
         search.measure(&product.residuals);
+        let nodes = search.nodes;
+        bound.nodes = nodes;
         bound.least =
             starts.iter().map(|&(row, state)| bound.steps[row][state as usize][0]).min().unwrap_or(0);
         Some(bound)
@@ -89,6 +94,21 @@ impl Bound {
         let row = self.rows.get(&relaxed).copied();
         self.met.insert((residual, time), row);
         row
+    }
+
+    /// By state, the first time from which on it cannot matter any more, whatever is left to be met.
+    pub(crate) fn until(&self, states: usize) -> Vec<u32> {
+        let mut until = vec![0; states];
+        for &(row, state) in &self.nodes {
+            let last = match self.steps[row][state as usize][0] {
+                NEVER => continue,
+                0 => u32::MAX,
+                owed => (self.end + 1).saturating_sub(owed),
+            };
+            let known = &mut until[state as usize];
+            *known = last.max(*known);
+        }
+        until
     }
 
     /// Whether a state with a row can matter at a time, where something more is owed at most up to `last`.

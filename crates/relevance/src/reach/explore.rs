@@ -12,7 +12,7 @@ use hyperplan_space::StateIx;
 use rustc_hash::FxHashMap;
 
 /// Joint states entered between two looks at the clock.
-const STRIDE: usize = 1 << 14;
+pub(super) const STRIDE: usize = 1 << 14;
 
 /// A joint state and what is left to be met after it.
 pub(crate) type Joint<const N: usize> = (Residual, [StateIx; N]);
@@ -42,9 +42,11 @@ pub(crate) struct Exploration<'a, const N: usize> {
     within: [Vec<u32>; N],
     /// In which states each path is at some times.
     cuts: [Vec<(u32, &'a [StateIx])>; N],
-    bound: Option<Bound>,
+    pub(super) bound: Option<Bound>,
+    /// How much later than the earliest run a run may owe nothing but safety.
+    pub(super) slack: Option<u32>,
     /// Whether a run was lost that the goal does not exclude.
-    lossy: bool,
+    pub(super) lossy: bool,
     recent: Recent,
 }
 
@@ -70,6 +72,7 @@ impl<'a, const N: usize> Exploration<'a, N> {
             within,
             cuts: question.paths.map(|path| question.arena.cube.of(path).collect()),
             bound: None,
+            slack: question.slack,
             lossy: false,
             recent: Recent::default(),
         }
@@ -134,7 +137,7 @@ impl<'a, const N: usize> Exploration<'a, N> {
     /// Whether the lower bound on what is still to be done leaves a state in.
     fn in_time(&mut self, row: Option<usize>, state: StateIx, time: u32) -> bool {
         let (Some(bound), Some(row)) = (&self.bound, row) else { return true };
-        let last = self.product.question.slack.map_or(bound.end, |slack| self.least().saturating_add(slack));
+        let last = self.slack.map_or(bound.end, |slack| self.least().saturating_add(slack));
         if bound.admits(row, state, time, last.min(bound.end)) {
             return true;
         }
@@ -278,9 +281,7 @@ impl<'a, const N: usize> Exploration<'a, N> {
 
     /// Without a lower bound, the slack is measured from the first run that owes nothing but safety.
     fn note(&mut self, joints: &[Joint<N>], time: u32) {
-        let Some(slack) =
-            self.product.question.slack.filter(|_| self.bound.is_none() && self.deadline.is_none())
-        else {
+        let Some(slack) = self.slack.filter(|_| self.bound.is_none() && self.deadline.is_none()) else {
             return;
         };
         if joints.iter().any(|joint| self.product.owes_nothing(joint.0)) {
@@ -410,6 +411,12 @@ impl<'a> Exploration<'a, 1> {
     pub(crate) fn least_cost(mut self, ceiling: &Ceiling) -> Result<i64, Error> {
         let forward = self.forward()?;
         Ok(self.cheapest(&forward, ceiling).map_or(NO_WAY, |(cost, _)| cost))
+    }
+
+    /// By state, the first time from which on it cannot matter any more.
+    pub(crate) fn until(self) -> Option<Vec<u32>> {
+        let states = self.product.graphs[0].len();
+        self.bound.map(|bound| bound.until(states))
     }
 
     /// Measures first how far states are from where nothing is owed.

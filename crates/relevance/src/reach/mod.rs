@@ -28,6 +28,7 @@
 
 mod atoms;
 mod bound;
+mod dive;
 mod explore;
 mod product;
 mod question;
@@ -48,7 +49,14 @@ use crate::task::Error;
 /// # Errors
 /// [`Error::TooLarge`] beyond the budget.
 pub(crate) fn layers(question: &Question<'_, 1>) -> Result<Explored<1>, Error> {
-    Exploration::bounded(question).explore()
+    let mut exploration = Exploration::bounded(question);
+    if question.one_run
+        && question.ceiling.is_none()
+        && let Some(layers) = exploration.dive()?
+    {
+        return Ok(Explored { layers, lossy: true });
+    }
+    exploration.explore()
 }
 
 /// The states of two paths, explored as a pair, that can matter at each time; one run of each, if asked for and there
@@ -63,6 +71,12 @@ pub(crate) fn pair_layers(question: &Question<'_, 2>) -> Result<Explored<2>, Err
 /// A time before which no run of an explored path owes nothing but safety.
 pub(crate) fn least(question: &Question<'_, 1>) -> u32 {
     Exploration::bounded(question).least()
+}
+
+/// By state of an explored path, the first time from which on it cannot matter any more; `None` where no bound is known. It is
+/// found without exploring time by time.
+pub(crate) fn until(question: &Question<'_, 1>) -> Option<Vec<u32>> {
+    Exploration::bounded(question).until()
 }
 
 /// What no run of an explored path counts less than in the sum of a ceiling; [`NO_WAY`] if it has none.
