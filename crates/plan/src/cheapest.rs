@@ -9,8 +9,8 @@
 use crate::config::{Config, Outcome, Quantifiers, Verdict};
 use crate::fact::{Error, Reason};
 use crate::minimize::{Spent, Steps};
-use crate::solve::solve_sharing;
-use hyperplan_encode::{self as encode, Among, Encoder, Goal, Graphs};
+use crate::solve::solve;
+use hyperplan_encode::{self as encode, Among, Encoder, Goal};
 use hyperplan_problem::{Mode, Objective, PathId, Problem, Strategy, Target, bounded, extended};
 use hyperplan_solver::Unknown;
 
@@ -48,9 +48,8 @@ pub fn cheapest(
     config: &Config,
 ) -> Result<Cheapest, Error> {
     let (objective, time) = to_the_end(problem, objective, targets);
-    let graphs = Graphs::default();
-    let outcome = solve_sharing(problem, &objective, config, &graphs)?;
-    cheaper(Search::new((problem, &objective, time), targets, config, graphs, &outcome), outcome)
+    let outcome = solve(problem, &objective, config)?;
+    cheaper(Search::new((problem, &objective, time), targets, config, &outcome), outcome)
 }
 
 /// As [`cheapest`], of an objective whose paths are long enough to be paid for to the end, among the strategies of which some
@@ -64,7 +63,7 @@ pub(crate) fn cheapest_with(
 ) -> Result<Cheapest, Error> {
     let all: Vec<Target> = kept.iter().map(|(target, _)| target).chain(targets).cloned().collect();
     let (_, time) = to_the_end(problem, objective, &all);
-    let mut search = Search::new((problem, objective, time), targets, config, Graphs::default(), before);
+    let mut search = Search::new((problem, objective, time), targets, config, before);
     search.kept = kept;
     let outcome = search.ask(kept)?;
     cheaper(search, outcome)
@@ -81,10 +80,7 @@ pub(crate) fn improved(
 ) -> Option<Result<Cheapest, Error>> {
     let (extended, time) = to_the_end(problem, objective, targets);
     let same = extended.formula.nodes.len() == objective.formula.nodes.len();
-    same.then(|| {
-        let graphs = Graphs::default();
-        cheaper(Search::new((problem, objective, time), targets, config, graphs, &outcome), outcome)
-    })
+    same.then(|| cheaper(Search::new((problem, objective, time), targets, config, &outcome), outcome))
 }
 
 /// Lowers what an answer's strategy costs.
@@ -136,7 +132,6 @@ struct Search<'a> {
     /// Targets that are at most so large in any case.
     kept: &'a [(Target, i64)],
     config: &'a Config,
-    graphs: Graphs,
     /// Whether bounds can be asked for state by state; else they are parts of the objective.
     one_by_one: bool,
     spent: Spent,
@@ -153,13 +148,12 @@ impl<'a> Search<'a> {
         (problem, objective, time): (&'a Problem, &'a Objective, u32),
         targets: &'a [Target],
         config: &'a Config,
-        graphs: Graphs,
         before: &Outcome,
     ) -> Self {
         // A search without queries takes no bounds.
         let one_by_one = before.states.is_enumerated() && config.quantifiers != Quantifiers::Explicit;
         let spent = Spent::default();
-        Search { problem, objective, time, targets, kept: &[], config, graphs, one_by_one, spent }
+        Search { problem, objective, time, targets, kept: &[], config, one_by_one, spent }
     }
 
     /// What each target comes to under a strategy, by the checker.
@@ -221,11 +215,11 @@ impl<'a> Search<'a> {
             return Ok(None);
         }
         let bounds = self.bounds(at, best.values[at], best);
-        let Config { states, limits, deadline, among, .. } = self.config;
+        let Config { states, limits, deadline, among, graphs, .. } = self.config;
         let among = Among { bounds, cube: among.cube.clone() };
         let stop = || deadline.passed();
         let (problem, objective) = (self.problem, self.objective);
-        let encoder = Encoder::among(problem, objective, *states, *limits, &stop, &self.graphs, &among);
+        let encoder = Encoder::among(problem, objective, *states, *limits, &stop, graphs, &among);
         let goal = Goal::new(&objective.formula, true);
         match encoder.and_then(|encoder| encoder.writer.least(&goal)) {
             Ok(least) => Ok(least.map(|least| least.saturating_add(self.targets[at].constant))),
@@ -252,12 +246,12 @@ impl<'a> Search<'a> {
     /// Asks for a strategy of which targets are at most so large.
     fn ask(&mut self, bounds: &[(Target, i64)]) -> Result<Outcome, Error> {
         if bounds.is_empty() {
-            return solve_sharing(self.problem, self.objective, self.config, &self.graphs);
+            return solve(self.problem, self.objective, self.config);
         }
         if self.one_by_one {
             let among = Among { bounds: bounds.to_vec(), cube: self.config.among.cube.clone() };
             let config = Config { among, ..self.config.clone() };
-            match solve_sharing(self.problem, self.objective, &config, &self.graphs) {
+            match solve(self.problem, self.objective, &config) {
                 Err(Error::Encode(encode::Error::TooLarge { .. } | encode::Error::NotEnumerable { .. })) => {
                     self.one_by_one = false;
                 }
@@ -267,7 +261,7 @@ impl<'a> Search<'a> {
         let (problem, objective) = bounded(self.problem, self.objective, bounds, self.time);
         // Systems that are bounded otherwise are others, with other states to choose a case by: all cases are looked at.
         let config = Config { among: Among::default(), ..self.config.clone() };
-        let mut outcome = solve_sharing(&problem, &objective, &config, &Graphs::default())?;
+        let mut outcome = solve(&problem, &objective, &config)?;
         for trace in outcome.witness.iter_mut().flat_map(|strategy| &mut strategy.traces) {
             let width = self.problem.systems[self.objective.paths[trace.path].system].vars.len();
             for state in &mut trace.states {

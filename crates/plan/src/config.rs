@@ -2,7 +2,7 @@
 
 use crate::fact::{Because, Note, Reason};
 use crate::watch::Watch;
-use hyperplan_encode::{Among, Limits};
+use hyperplan_encode::{Among, Graphs, Limits};
 pub use hyperplan_problem::answer::{Quantifiers, States, Verdict, Verified};
 use hyperplan_problem::{PathId, Strategy};
 use hyperplan_solver::{Deadline, Identity, QuerySize, Spec};
@@ -38,6 +38,8 @@ pub struct Config {
     pub among: Among,
     /// Where it is told how far the search is.
     pub watch: Watch,
+    /// Systems that were enumerated; who asks several questions about the same ones shares it.
+    pub graphs: Graphs,
 }
 
 impl Config {
@@ -58,6 +60,7 @@ impl Config {
             limits: Limits::default(),
             among: Among::default(),
             watch: Watch::default(),
+            graphs: Graphs::default(),
         }
     }
 }

@@ -12,7 +12,7 @@
 use crate::config::Config;
 use crate::fact::Error;
 use crate::prepare::{decided, is_existential};
-use hyperplan_encode::{self as encode, Among, Case, Encoder, Goal, Graphs};
+use hyperplan_encode::{self as encode, Among, Case, Encoder, Goal};
 use hyperplan_horizon::horizons;
 use hyperplan_problem::{
     ActionId, Expr, Formula, FormulaId, Node, Objective, PathId, PathLeaf, Problem, Quantifier,
@@ -34,8 +34,7 @@ pub fn case(
         return Ok((objective.clone(), config.clone()));
     }
     let stop = || config.deadline.passed();
-    let encoder =
-        Encoder::sharing(problem, objective, config.states, config.limits, &stop, &Graphs::default())?;
+    let encoder = Encoder::sharing(problem, objective, config.states, config.limits, &stop, &config.graphs)?;
     let goal = Goal::new(&objective.formula, is_existential(objective));
     let nothing = || objective.paths.first().map(|path| decided(objective, path.quantifier));
     let own = match encoder.writer.case(&objective.leading_block(), &goal, (index, number)) {

@@ -12,14 +12,15 @@ use crate::explain::as_long;
 use crate::fact::Note;
 use crate::lint::demand::paths as read_paths;
 use crate::prepare::is_existential;
-use crate::solve::solve_sharing;
-use hyperplan_encode::Graphs;
+use crate::solve::solve;
 use hyperplan_problem::{
-    Cost, Expr, FormulaId, Interval, Node, Objective, PathId, Problem, Strategy, Target, Trace, Type, Value,
+    Cost, Expr, FormulaId, Interval, Node, Objective, PathId, PathLeaf, Problem, Strategy, System, Target,
+    Trace, Type, Value,
 };
 use hyperplan_solver::Deadline;
-use hyperplan_space::{bounds, holds_in};
+use hyperplan_space::{Graph, StateIx, bounds, eval, holds_in};
 use hyperplan_verify::{Budget, Check, check, holds_for_all_outcomes, settled};
+use std::sync::Arc;
 use std::time::Duration;
 
 /// What came of the pass.
@@ -112,16 +113,16 @@ pub(crate) fn straightened_among(
 ) -> Straight {
     let found = outcome.verdict == Verdict::Realizable && outcome.verified == Some(Verified::BySearch);
     let first = outcome.witness.clone().filter(|_| found && is_existential(objective));
-    let pass = first.as_ref().and_then(|first| Pass::new(problem, (objective, plain), first, deadline));
+    let config = Config { deadline: deadline.clone(), queries: None, rivals: Vec::new(), ..config.clone() };
+    let pass = first.as_ref().and_then(|first| Pass::new(problem, (objective, plain), first, &config));
     let (Some(pass), Some(mut best)) = (pass, first) else {
         return Straight { outcome, steps: None, least: false };
     };
     pass.cut(&mut best);
-    let config = Config { deadline: deadline.clone(), queries: None, rivals: Vec::new(), ..config.clone() };
     let least = match pass.rest {
         _ if deadline.remaining().is_some_and(|left| left < WORTH_ASKING) => false,
-        Rest::Absorbed => pass.absorb_sooner(&mut best, &outcome, &config),
-        Rest::Owing => pass.owe_less(&mut best, &config),
+        Rest::Absorbed => pass.is_soonest(&best) || pass.absorb_sooner(&mut best, &outcome),
+        Rest::Owing => pass.owe_less(&mut best),
     };
     let steps = pass.steps(&best).map(|steps| (pass.rest, steps));
     let mut notes = outcome.notes.clone();
@@ -137,7 +138,8 @@ struct Pass<'a> {
     objective: &'a Objective,
     /// What says when paths are at rest.
     plain: &'a Objective,
-    deadline: &'a Deadline,
+    /// How questions are asked, and until when.
+    config: &'a Config,
     rest: Rest,
     /// The eventualities of each leading path alone.
     eventualities: Vec<(PathId, FormulaId)>,
@@ -149,7 +151,7 @@ impl<'a> Pass<'a> {
         problem: &'a Problem,
         (objective, plain): (&'a Objective, &'a Objective),
         first: &Strategy,
-        deadline: &'a Deadline,
+        config: &'a Config,
     ) -> Option<Self> {
         let formula = &plain.formula;
         let eventualities = formula.parts().into_iter().filter_map(|part| {
@@ -160,7 +162,7 @@ impl<'a> Pass<'a> {
         // Nobody waits for more of them to be followed one by one.
         let eventualities = Some(eventualities.collect::<Vec<_>>()).filter(|all| all.len() <= EVENTUALITIES);
         let eventualities = eventualities.unwrap_or_default();
-        let mut pass = Pass { problem, objective, plain, deadline, rest: Rest::Owing, eventualities };
+        let mut pass = Pass { problem, objective, plain, config, rest: Rest::Owing, eventualities };
         let owing = pass.steps(first).filter(|_| pass.owes_little());
         pass.rest = Rest::Absorbed;
         let absorbed = pass.steps(first).filter(|_| first.traces.iter().all(|trace| pass.is_absorbed(trace)));
@@ -241,7 +243,7 @@ impl<'a> Pass<'a> {
             let cuts = without_loops(&best.traces[at]);
             let mut taken = false;
             for trace in cuts {
-                if tried == LOOPS || self.deadline.passed() {
+                if tried == LOOPS || self.config.deadline.passed() {
                     return;
                 }
                 tried += 1;
@@ -259,14 +261,11 @@ impl<'a> Pass<'a> {
     /// Says of which paths the actions might have had other outcomes, unless the objective holds for these too.
     fn picked_outcomes(&self, strategy: &Strategy) -> Vec<Note> {
         let (problem, objective) = (self.problem, self.objective);
-        let graphs = Graphs::default();
         let picks = |trace: &&Trace| {
             let system = &problem.systems[objective.paths[trace.path].system];
             // Where there is one action, a path is what it leads to, and nothing else is chosen.
-            if system.actions.len() < 2 || !system.is_finite() {
-                return false;
-            }
-            let Some(graph) = graphs.explore(system, STATES) else { return false };
+            let several = system.actions.len() > 1;
+            let Some(graph) = several.then(|| self.graph(system)).flatten() else { return false };
             let mut at = graph.initial_state(&trace.states[0]);
             trace.actions.iter().zip(&trace.states[1..]).any(|(&action, next)| {
                 let Some(here) = at else { return false };
@@ -285,8 +284,44 @@ impl<'a> Pass<'a> {
             .collect()
     }
 
+    /// Whether each path of a strategy is absorbed as soon as its system can be, from where the path may start. A path that is not
+    /// absorbed at its end has taken more.
+    fn is_soonest(&self, strategy: &Strategy) -> bool {
+        strategy.traces.iter().all(|trace| {
+            let system = &self.problem.systems[self.objective.paths[trace.path].system];
+            let soonest = self.graph(system).and_then(|graph| {
+                let starts = self.starts(trace.path, system, &graph);
+                graph.steps_to(system, starts, &system.absorb)
+            });
+            soonest.is_some() && soonest.map(u64::from) == self.until_rest(trace, strategy)
+        })
+    }
+
+    /// The states that a path may start in, by what the objective asks of its first state alone.
+    fn starts(&self, path: PathId, system: &System, graph: &Graph) -> Vec<StateIx> {
+        let formula = &self.objective.formula;
+        let of_state = |part| {
+            let Node::Atom(expr) = &formula.nodes[part] else { return None };
+            let mut own = true;
+            expr.for_each_leaf(&mut |leaf| own &= matches!(leaf, PathLeaf::State(read, _) if *read == path));
+            own.then_some(expr)
+        };
+        let asked: Vec<&Expr<PathLeaf>> = formula.parts().into_iter().filter_map(of_state).collect();
+        let value = |leaf: &PathLeaf, state| match *leaf {
+            PathLeaf::State(_, leaf) => graph.leaf(system, state, leaf),
+            _ => 0,
+        };
+        let may = |state: &StateIx| asked.iter().all(|expr| eval(expr, &mut |leaf| value(leaf, *state)) != 0);
+        graph.initial.iter().copied().filter(may).collect()
+    }
+
+    /// The states of a system, which the search has enumerated before, or that are soon enumerated.
+    fn graph(&self, system: &System) -> Option<Arc<Graph>> {
+        system.is_finite().then(|| self.config.graphs.explore(system, STATES)).flatten()
+    }
+
     /// Asks for strategies that are absorbed sooner; whether there is none.
-    fn absorb_sooner(&self, best: &mut Strategy, outcome: &Outcome, config: &Config) -> bool {
+    fn absorb_sooner(&self, best: &mut Strategy, outcome: &Outcome) -> bool {
         let mut problem = self.problem.clone();
         let mut terms = Vec::new();
         for path in self.objective.leading_block() {
@@ -304,7 +339,7 @@ impl<'a> Pass<'a> {
         }
         let targets = [Target { terms, constant: 0, span: self.objective.span }];
         let outcome = Outcome { witness: Some(best.clone()), ..outcome.clone() };
-        let Some(Ok(cheapest)) = improved(&problem, self.objective, &targets, config, outcome) else {
+        let Some(Ok(cheapest)) = improved(&problem, self.objective, &targets, self.config, outcome) else {
             return false;
         };
         if let Some(other) = cheapest.outcome.witness {
@@ -315,8 +350,7 @@ impl<'a> Pass<'a> {
     }
 
     /// Asks for strategies whose eventualities are met sooner, path by path; whether there is none.
-    fn owe_less(&self, best: &mut Strategy, config: &Config) -> bool {
-        let graphs = Graphs::default();
+    fn owe_less(&self, best: &mut Strategy) -> bool {
         let paths = self.objective.leading_block();
         let mut sure = paths.len() == 1;
         for path in paths {
@@ -324,7 +358,7 @@ impl<'a> Pass<'a> {
             while let Some(most) = self.longest(best, path).filter(|most| *most > low) {
                 let middle = low + (most - low) / 2;
                 let sooner = self.sooner(best, path, middle);
-                match solve_sharing(self.problem, &sooner, config, &graphs) {
+                match solve(self.problem, &sooner, self.config) {
                     Ok(Outcome { verdict: Verdict::Realizable, witness: Some(other), .. }) => {
                         if !self.offer(best, other) {
                             // What is nested in it is met too late.

@@ -8,22 +8,22 @@
 //!   is bisected.
 //! - *Parts that last*: of other objectives those conjuncts are taken that last. If these alone are hopeless for a
 //!   value, so is the objective for all smaller ones.
-//! - *Where a plan is done*: with the largest value of a range that is not wide, a plan comes early to where it stays. What
-//!   is left of its horizon is a guess of how much less would do, and is tried first; that is no proof, and needs none.
+//! - *Where a plan is done*: with the largest value of a range that is not wide, a plan comes early to where it stays, and what
+//!   others do that is read is over. What is left of its horizon is a guess of how much less would do, and is tried first; that
+//!   is no proof, and needs none.
 //! - *Hopeless* is what the states that can matter show without any solver: for some path of the leading block
-//!   there are none, say since the goal is too far away.
-//!
-//! Systems that do not change with the constant are enumerated once.
+//!   there are none, say since the goal is too far away. Each path is looked at by itself first, which takes least.
 
 use crate::config::{Config, Outcome, Seconds, Verdict};
 use crate::decide::SLACKS;
 use crate::fact::{Error, Reason, Unsupported};
 use crate::lasting::{conjuncts, lasting};
 use crate::prepare::is_existential;
-use crate::solve::solve_sharing;
-use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Narrowing};
-use hyperplan_problem::{FormulaId, Node, Objective, Problem, Trace};
+use crate::solve::solve;
+use hyperplan_encode::{self as encode, Encoder, Goal, Narrowing};
+use hyperplan_problem::{FormulaId, Node, Objective, PathId, Problem, Trace};
 use hyperplan_solver::{QuerySize, Unknown};
+use hyperplan_verify::{Budget, settled_for_others};
 use std::ops::RangeInclusive;
 use std::time::{Duration, Instant};
 
@@ -86,7 +86,7 @@ pub fn minimize<E>(
         minimizer.low = minimizer.high;
         return Ok(minimizer.conclude(none, None));
     }
-    let guess = last.as_ref().and_then(saved);
+    let guess = last.as_ref().and_then(|last| saved(last, objective));
     minimizer.refute(guess.map(|saved| minimizer.high - saved))?;
     minimizer.run(last)
 }
@@ -140,7 +140,6 @@ struct Minimizer<'a, E> {
     objective: &'a str,
     problem_of: ProblemOf<'a, E>,
     config: &'a Config,
-    graphs: Graphs,
     chain: Chain,
     /// The first value of the range.
     first: i64,
@@ -213,8 +212,8 @@ impl<'a, E> Minimizer<'a, E> {
         let problem = problem_of(low).map_err(MinimizeError::Problem)?;
         let parts = conjuncts(&find(&problem, objective, low)?.formula);
         let chain = Chain { end: low, whole: !parts.is_empty(), parts, problem };
-        let (graphs, spent) = (Graphs::default(), Spent::default());
-        Ok(Minimizer { objective, problem_of, config, graphs, chain, first: low, low, high, spent })
+        let spent = Spent::default();
+        Ok(Minimizer { objective, problem_of, config, chain, first: low, low, high, spent })
     }
 
     fn problem(&mut self, value: i64) -> Result<Problem, MinimizeError<E>> {
@@ -231,7 +230,7 @@ impl<'a, E> Minimizer<'a, E> {
             let lasts = problem.as_ref().and_then(|problem| {
                 let (from, to) =
                     (chain.problem.objective(self.objective)?, problem.objective(self.objective)?);
-                lasting((&chain.problem, from), (problem, to), &self.graphs)
+                lasting((&chain.problem, from), (problem, to), &self.config.graphs)
             });
             let before = chain.parts.len();
             chain.parts.retain(|&part| lasts.as_ref().is_some_and(|lasts| lasts[part]));
@@ -259,16 +258,25 @@ impl<'a, E> Minimizer<'a, E> {
         Ok(Some(solved).filter(|solved| solved.outcome.verdict != Verdict::Unknown))
     }
 
-    /// Raises `low` past values for which the parts that last are hopeless. A guess of the least of the others is tried
-    /// first.
+    /// Raises `low` past values for which the parts that last are hopeless. A guess of the least of the others is tried first,
+    /// if there is one: where only smaller values are hopeless, it is asked for at once.
     fn refute(&mut self, guess: Option<i64>) -> Result<(), MinimizeError<E>> {
-        let mut steps = Steps::default();
-        let mut first: Vec<i64> = guess.into_iter().flat_map(|guess| [guess, guess - 1]).collect();
-        first.retain(|value| (self.low..=self.high).contains(value));
-        while let Some(value) = first.pop().or_else(|| steps.next(self.low, self.high)) {
-            if steps.bound.is_some_and(|bound| bound <= value) {
-                continue;
+        let below = guess.map(|guess| guess - 1).filter(|below| (self.low..=self.high).contains(below));
+        if let Some(below) = below {
+            self.raise(Some(below), Among::All)?;
+            if self.low > below {
+                return Ok(());
             }
+        }
+        self.raise(None, Among::Each)?;
+        self.raise(None, Among::All)
+    }
+
+    /// Raises `low` past values for which the parts that last are hopeless, by what is looked at together.
+    fn raise(&mut self, mut first: Option<i64>, among: Among) -> Result<(), MinimizeError<E>> {
+        let mut steps = Steps::default();
+        let only = first.is_some();
+        while let Some(value) = first.take().or_else(|| steps.next(self.low, self.high).filter(|_| !only)) {
             self.follow(value);
             if self.chain.parts.is_empty() {
                 break;
@@ -276,7 +284,7 @@ impl<'a, E> Minimizer<'a, E> {
             let problem = self.problem(value)?;
             let mut objective = find(&problem, self.objective, value)?.clone();
             objective.formula.push(Node::And(self.chain.parts.clone()), objective.span);
-            if !self.is_hopeless(&problem, &objective) {
+            if !self.is_hopeless(&problem, &objective, among) {
                 steps.bound = Some(value);
             } else if value == self.high {
                 // The answer for the last value is wanted too.
@@ -291,9 +299,9 @@ impl<'a, E> Minimizer<'a, E> {
     }
 
     /// Whether the states that can matter show that the objective is unrealizable.
-    fn is_hopeless(&mut self, problem: &Problem, objective: &Objective) -> bool {
+    fn is_hopeless(&mut self, problem: &Problem, objective: &Objective, among: Among) -> bool {
         let start = Instant::now();
-        let hopeless = hopeless(problem, objective, self.config, &self.graphs);
+        let hopeless = hopeless(problem, objective, self.config, among);
         self.spent.seconds.encode += start.elapsed().as_secs_f64();
         // What cannot be settled here is left to the solver.
         hopeless.unwrap_or(false)
@@ -322,10 +330,10 @@ impl<'a, E> Minimizer<'a, E> {
                 continue;
             }
             let problem = self.problem(value)?;
-            // Where the objective lasts, `refute` has asked this.
-            if !self.chain.whole && value < self.high {
+            // Where the objective lasts, `refute` has asked this; and our own solver's search begins with it.
+            if !self.chain.whole && value < self.high && !self.config.solver.is_embedded() {
                 let objective = find(&problem, self.objective, value)?;
-                if self.is_hopeless(&problem, objective) {
+                if self.is_hopeless(&problem, objective, Among::All) {
                     self.low = value + 1;
                     continue;
                 }
@@ -375,8 +383,8 @@ impl<'a, E> Minimizer<'a, E> {
         if let Some(limit) = limit {
             config.deadline = config.deadline.within(limit);
         }
-        let outcome = solve_sharing(&problem, objective, &config, &self.graphs)
-            .map_err(|error| MinimizeError::Solve { value, error })?;
+        let outcome =
+            solve(&problem, objective, &config).map_err(|error| MinimizeError::Solve { value, error })?;
         self.spent.add(&outcome);
         if outcome.verdict == Verdict::Realizable {
             self.config.watch.tell(|standing| {
@@ -393,14 +401,33 @@ impl<'a, E> Minimizer<'a, E> {
     }
 }
 
-/// The steps of its horizon in which no path of a strategy moves any more.
-fn saved(solved: &Solved) -> Option<i64> {
-    let traces = &solved.outcome.witness.as_ref()?.traces;
+/// The steps of its horizon in which no path of a strategy moves any more, nor paths of others do what is read, if that is before
+/// its end.
+fn saved(solved: &Solved, objective: &str) -> Option<i64> {
+    let strategy = solved.outcome.witness.as_ref()?;
+    let traces = &strategy.traces;
     let idle = |trace: &Trace| {
         trace.states.iter().rev().zip(trace.states.iter().rev().skip(1)).take_while(|(a, b)| a == b).count()
     };
     let saved = traces.iter().map(idle).min()?;
-    i64::try_from(saved).ok()
+    let objective = solved.problem.objective(objective)?;
+    let others = || {
+        let (_, time) =
+            settled_for_others(&solved.problem, objective, strategy, &Budget::default()).ok()??;
+        let steps = traces.iter().map(|trace| trace.actions.len()).max()?;
+        steps.checked_sub(time as usize).filter(|saved| *saved > 0)
+    };
+    let others = if objective.blocks().len() > 1 { others() } else { None };
+    i64::try_from(others.map_or(saved, |others| others.min(saved))).ok()
+}
+
+/// Which paths of a leading block are looked at together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Among {
+    /// Each by itself, which is soon done.
+    Each,
+    /// All that are tied, and the one path against the others' player.
+    All,
 }
 
 /// Whether nothing can matter of some path of a leading block of existential paths. That counts only where every
@@ -409,10 +436,10 @@ fn hopeless(
     problem: &Problem,
     objective: &Objective,
     config: &Config,
-    graphs: &Graphs,
+    among: Among,
 ) -> Result<bool, encode::Error> {
     let stop = || config.deadline.passed();
-    let encoder = Encoder::sharing(problem, objective, config.states, config.limits, &stop, graphs)?;
+    let encoder = Encoder::sharing(problem, objective, config.states, config.limits, &stop, &config.graphs)?;
     if !is_existential(objective) || !encoder.states.is_enumerated() {
         return Ok(false);
     }
@@ -421,12 +448,21 @@ fn hopeless(
     }
     let goal = Goal::new(&objective.formula, true);
     let leading = objective.leading_block();
-    // Two steps, as most questions here are answered by the first.
-    for slack in [SLACKS[0], None] {
-        let relevant = encoder.writer.relevant(&leading, &goal, Narrowing { slack, one_run: false })?;
-        if !relevant.is_hopeless() || relevant.is_exact() {
-            return Ok(relevant.is_hopeless());
+    let one_run = among == Among::Each || leading.len() > 1;
+    let blocks: Vec<&[PathId]> = match among {
+        Among::Each => leading.chunks(1).collect(),
+        Among::All => vec![&leading],
+    };
+    for block in blocks {
+        // Two steps, as most questions here are answered by the first.
+        for slack in [SLACKS[0], None] {
+            let relevant = encoder.writer.relevant(block, &goal, Narrowing { slack, one_run })?;
+            match relevant.is_hopeless() {
+                true if relevant.is_exact() => return Ok(true),
+                true => {}
+                false => break,
+            }
         }
     }
-    Ok(true)
+    Ok(false)
 }

@@ -3,7 +3,6 @@
 use crate::config::{Config, Outcome, Verdict};
 use crate::fact::{Error, Fallen, Fault, Note, Reason};
 use crate::search::search;
-use hyperplan_encode::Graphs;
 use hyperplan_problem::{Objective, Problem};
 use hyperplan_solver::Unknown;
 use std::sync::Arc;
@@ -36,7 +35,7 @@ pub(crate) fn race(problem: &Problem, objective: &Objective, config: &Config) ->
         };
         let (send, question) = (send.clone(), Arc::clone(&question));
         let lone = move || {
-            let result = search(&question.0, &question.1, &own, &Graphs::default());
+            let result = search(&question.0, &question.1, &own);
             // When there is a winner, nobody may listen any more.
             let _ = send.send((lane, result));
         };

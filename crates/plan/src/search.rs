@@ -8,7 +8,7 @@ use crate::fact::{Error, Note, Reason, Unsupported};
 use crate::oracle::{Account, Oracle, Stop};
 use crate::prepare::{decided, is_existential, no_dead_ends, without_paths};
 use crate::watch::Stage;
-use hyperplan_encode::{self as encode, Encoder, Graphs};
+use hyperplan_encode::{self as encode, Encoder};
 use hyperplan_problem::answer::ReasonCode;
 use hyperplan_problem::{Objective, PathId, Problem, Strategy};
 use hyperplan_verify::{Budget, holds_for_all_outcomes};
@@ -16,18 +16,13 @@ use std::time::Instant;
 
 /// Decides an objective with one solver; systems that were enumerated before are not enumerated again. Where the choice
 /// of states is ours and too many can matter, the search goes on symbolically.
-pub(crate) fn search(
-    problem: &Problem,
-    objective: &Objective,
-    config: &Config,
-    graphs: &Graphs,
-) -> Result<Outcome, Error> {
-    match attempt(problem, objective, config, graphs) {
+pub(crate) fn search(problem: &Problem, objective: &Objective, config: &Config) -> Result<Outcome, Error> {
+    match attempt(problem, objective, config) {
         Err(Error::Encode(error @ encode::Error::TooLarge { .. }))
             if config.states.is_none() && config.among.bounds.is_empty() =>
         {
             let symbolic = Config { states: Some(States::Bitvec), ..config.clone() };
-            let mut outcome = attempt(problem, objective, &symbolic, graphs)?;
+            let mut outcome = attempt(problem, objective, &symbolic)?;
             outcome.notes.push(Note::Symbolic(error));
             Ok(outcome)
         }
@@ -35,16 +30,11 @@ pub(crate) fn search(
     }
 }
 
-fn attempt(
-    problem: &Problem,
-    objective: &Objective,
-    config: &Config,
-    graphs: &Graphs,
-) -> Result<Outcome, Error> {
+fn attempt(problem: &Problem, objective: &Objective, config: &Config) -> Result<Outcome, Error> {
     let start = Instant::now();
     let stop = || config.deadline.passed();
     let (wish, limits) = (config.states, config.limits);
-    let encoder = Encoder::among(problem, objective, wish, limits, &stop, graphs, &config.among)?;
+    let encoder = Encoder::among(problem, objective, wish, limits, &stop, &config.graphs, &config.among)?;
     if encoder.states.is_arithmetic() && config.solver.is_embedded() {
         return Err(needs_arithmetic(&encoder));
     }
@@ -59,7 +49,7 @@ fn attempt(
             let system = problem.systems[var.system].name.clone();
             notes.push(Note::NoPaths { system, path: var.name.clone() });
             let decided = decided(objective, var.quantifier);
-            let encoder = Encoder::sharing(problem, &decided, wish, limits, &stop, graphs)?;
+            let encoder = Encoder::sharing(problem, &decided, wish, limits, &stop, &config.graphs)?;
             Decision::of(&encoder, config, &mut oracle)
         }
     };

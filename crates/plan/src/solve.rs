@@ -4,7 +4,6 @@ use crate::config::{Config, Outcome};
 use crate::fact::Error;
 use crate::race::race;
 use crate::search::search;
-use hyperplan_encode::Graphs;
 use hyperplan_problem::{Objective, Problem};
 
 /// Decides an objective. A strategy (or counterexample) in the outcome has been verified, unless the configuration
@@ -13,18 +12,8 @@ use hyperplan_problem::{Objective, Problem};
 /// # Errors
 /// What is not supported, failures of solvers, and answers that fail verification; being undecided is no error.
 pub fn solve(problem: &Problem, objective: &Objective, config: &Config) -> Result<Outcome, Error> {
-    solve_sharing(problem, objective, config, &Graphs::default())
-}
-
-/// As [`solve`], with systems that were enumerated before.
-pub(crate) fn solve_sharing(
-    problem: &Problem,
-    objective: &Objective,
-    config: &Config,
-    graphs: &Graphs,
-) -> Result<Outcome, Error> {
     if config.rivals.is_empty() {
-        search(problem, objective, config, graphs)
+        search(problem, objective, config)
     } else {
         race(problem, objective, config)
     }

@@ -266,6 +266,33 @@ impl System {
         self.vars.iter().all(|var| var.ty.is_finite())
     }
 
+    /// Whether it is equal but for costs, which change neither states nor transitions.
+    #[must_use]
+    pub fn equals_but_for_costs(&self, other: &System) -> bool {
+        let System {
+            name,
+            vars,
+            actions,
+            clauses,
+            also,
+            edges,
+            trans,
+            init,
+            costs: _,
+            base,
+            labels,
+            absorb,
+            observe,
+            map,
+            coordinates,
+            span,
+        } = self;
+        (name, vars, actions, span) == (&other.name, &other.vars, &other.actions, &other.span)
+            && (clauses, also, edges, trans) == (&other.clauses, &other.also, &other.edges, &other.trans)
+            && (init, base, labels, absorb) == (&other.init, &other.base, &other.labels, &other.absorb)
+            && (observe, map, coordinates) == (&other.observe, &other.map, &other.coordinates)
+    }
+
     /// The variable with that name.
     #[must_use]
     pub fn var(&self, name: &str) -> Option<VarId> {

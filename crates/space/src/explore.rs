@@ -2,12 +2,13 @@
 
 use crate::also::{Updates, applicable, applied, no_number};
 use crate::eval::bounds;
-use crate::graph::{Graph, LIVE, Letter, StateIx, TooLarge, sources};
+use crate::graph::{EDGES, Graph, LIVE, Letter, StateIx, TooLarge, sources};
 use crate::index::Met;
 use crate::row::{Row, Rows};
 use crate::step::{Steps, conjuncts, variables_read};
 use hyperplan_problem::{ActionId, Also, Clause, Expr, Leaf, System, Update, Value, VarId};
 use rustc_hash::FxHashMap;
+use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 impl Graph {
@@ -57,26 +58,33 @@ fn is_too_wide(system: &System, budget: usize) -> bool {
         && most.saturating_mul(most) > budget.saturating_mul(16) as u128
 }
 
-/// Systems that were enumerated, for objectives over equal ones.
-#[derive(Debug, Default)]
+/// Systems that were enumerated, for objectives over equal ones: the last few. Clones share them.
+#[derive(Clone, Debug, Default)]
 pub struct Graphs {
-    known: Mutex<Vec<Explored>>,
+    known: Arc<Mutex<VecDeque<Explored>>>,
 }
+
+/// How many are kept: more than the systems of most problems, and so few that what is gone does not fill the memory.
+const KEPT: usize = 8;
 
 /// A system, the budget, and what came of it.
 type Explored = (System, usize, Option<Arc<Graph>>);
 
 impl Graphs {
-    /// As [`Graph::explore`], but an equal system with the same budget is not enumerated again; `None` beyond the
-    /// budget.
+    /// As [`Graph::explore`], but a system with the same budget that is equal but for its costs is not enumerated again; `None`
+    /// beyond the budget.
     #[must_use]
     pub fn explore(&self, system: &System, budget: usize) -> Option<Arc<Graph>> {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, _, graph)) = known.iter().find(|(s, b, _)| *b == budget && s == system) {
-            return graph.clone();
+        let tells = |(other, spent, graph): &&Explored| {
+            (*spent == budget || graph.is_some()) && other.equals_but_for_costs(system)
+        };
+        if let Some((_, _, graph)) = known.iter().find(tells) {
+            return graph.clone().filter(|graph| graph.fits(budget));
         }
         let graph = Graph::explore(system, budget).ok().map(Arc::new);
-        known.push((system.clone(), budget, graph.clone()));
+        known.truncate(KEPT - 1);
+        known.push_front((system.clone(), budget, graph.clone()));
         graph
     }
 }
@@ -163,7 +171,7 @@ impl Explorer<'_> {
             found.sort_unstable();
             found.dedup();
             edges.extend_from_slice(&found);
-            if edges.len() > self.budget.saturating_mul(16) {
+            if edges.len() > self.budget.saturating_mul(EDGES) {
                 return Err(TooLarge);
             }
             starts.push(edges.len() as u32);

@@ -4,9 +4,9 @@
 //! that a state and a letter have at most one successor. A system whose actions are deterministic has one letter an
 //! action.
 
-use crate::eval::{code, decode};
+use crate::eval::{code, decode, eval};
 use crate::row::Row;
-use hyperplan_problem::{ActionId, Leaf, State, System, Value};
+use hyperplan_problem::{ActionId, Expr, Leaf, State, System, Value};
 use std::sync::OnceLock;
 
 /// The index of a state of a [`Graph`].
@@ -39,6 +39,9 @@ pub struct Graph {
     pub(crate) labels: Vec<OnceLock<Box<[i64]>>>,
 }
 
+/// Transitions that a budget of one state allows.
+pub(crate) const EDGES: usize = 16;
+
 /// Why a system was not enumerated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooLarge;
@@ -54,6 +57,11 @@ impl Graph {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.rank.is_empty()
+    }
+
+    /// Whether it has no more states than a budget, and no more transitions than go with it.
+    pub(crate) fn fits(&self, budget: usize) -> bool {
+        self.len() <= budget && self.transitions.len() <= budget.saturating_mul(EDGES)
     }
 
     /// The codes of a state's variables.
@@ -145,6 +153,26 @@ impl Graph {
     #[must_use]
     pub fn enables(&self, state: StateIx, action: ActionId) -> bool {
         self.of_action(state, action).next().is_some()
+    }
+
+    /// The least number of steps from one of these states to one in which an expression over the system's states holds.
+    #[must_use]
+    pub fn steps_to(&self, system: &System, starts: Vec<StateIx>, expr: &Expr<Leaf>) -> Option<u32> {
+        let holds = |state: StateIx| eval(expr, &mut |leaf| self.leaf(system, state, *leaf)) != 0;
+        let mut met = vec![false; self.len()];
+        let mut now = starts;
+        for steps in 0.. {
+            now.retain(|&state| !std::mem::replace(&mut met[state as usize], true));
+            if now.is_empty() {
+                break;
+            }
+            if now.iter().any(|&state| holds(state)) {
+                return Some(steps);
+            }
+            let next = now.iter().flat_map(|&state| self.successors(state)).map(|&(_, next)| next);
+            now = next.filter(|&next| !met[next as usize]).collect();
+        }
+        None
     }
 
     /// Whether every transition of a state leads back to it; so too where there is none.

@@ -62,7 +62,32 @@ pub fn settled(
     strategy: &Strategy,
     budget: &Budget,
 ) -> Result<Option<(bool, u32)>, Error> {
-    let outcome = Search::new(problem, objective, objective.paths.len(), budget).and_then(|mut search| {
+    settled_beside(problem, objective, objective.paths.len(), strategy, budget)
+}
+
+/// As [`settled`], of an objective under a strategy, one trace for each path variable of its leading block: whatever the other
+/// paths do.
+///
+/// # Errors
+/// Those of [`settled`].
+pub fn settled_for_others(
+    problem: &Problem,
+    objective: &Objective,
+    strategy: &Strategy,
+    budget: &Budget,
+) -> Result<Option<(bool, u32)>, Error> {
+    settled_beside(problem, objective, objective.leading_block().len(), strategy, budget)
+}
+
+/// Where so many paths are given.
+fn settled_beside(
+    problem: &Problem,
+    objective: &Objective,
+    given: usize,
+    strategy: &Strategy,
+    budget: &Budget,
+) -> Result<Option<(bool, u32)>, Error> {
+    let outcome = Search::new(problem, objective, given, budget).and_then(|mut search| {
         for trace in &strategy.traces {
             let fixed = well_formed(&mut search, objective, trace)?;
             search.fixed.push(fixed);

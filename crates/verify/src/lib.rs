@@ -82,7 +82,7 @@ mod valuation;
 mod value;
 mod worst;
 
-pub use check::{check, decide, settled};
+pub use check::{check, decide, settled, settled_for_others};
 pub use cost::cost;
 pub use follow::{Open, complete};
 pub use outcomes::holds_for_all_outcomes;

@@ -2,8 +2,7 @@
 
 use crate::config::{Config, Outcome, Verdict};
 use crate::fact::{Error, Fault, Reason};
-use crate::solve::solve_sharing;
-use hyperplan_encode::Graphs;
+use crate::solve::solve;
 use hyperplan_problem::{Objective, Problem};
 use hyperplan_solver::{Deadline, Unknown};
 use std::time::Duration;
@@ -15,14 +14,13 @@ const SHARE: u32 = 4;
 pub(super) struct Asker<'a> {
     pub(super) problem: &'a Problem,
     pub(super) config: &'a Config,
-    pub(super) graphs: Graphs,
     /// The end of the questions that are asked now.
     pub(super) deadline: Deadline,
 }
 
 impl<'a> Asker<'a> {
     pub(super) fn new(problem: &'a Problem, config: &'a Config) -> Self {
-        Asker { problem, config, graphs: Graphs::default(), deadline: config.deadline.clone() }
+        Asker { problem, config, deadline: config.deadline.clone() }
     }
 
     /// Gives the questions that follow one in so many parts of the time that is left for all.
@@ -39,7 +37,7 @@ impl<'a> Asker<'a> {
         }
         let share = self.deadline.remaining().map_or(Duration::MAX, |left| left / SHARE);
         let config = Config { deadline: self.deadline.within(share), ..self.config.clone() };
-        match solve_sharing(self.problem, objective, &config, &self.graphs) {
+        match solve(self.problem, objective, &config) {
             Ok(Outcome { verdict: Verdict::Unknown, reason, .. }) => {
                 Ok(Err(reason.unwrap_or(Reason::Solver(Unknown::Unsaid))))
             }

@@ -214,7 +214,7 @@ impl<'a> Explainer<'a> {
         self.demanded();
         let scope = self.found.core.as_ref().map(|core| core.scope);
         if let Some(core) = self.found.core.as_ref().filter(|core| core.scope != Scope::Game) {
-            self.found.wall = wall::wall(problem, objective, &core.parts, &self.asker.graphs);
+            self.found.wall = wall::wall(problem, objective, &core.parts, &self.asker.config.graphs);
         }
         if scope == Some(Scope::Game) {
             self.game(best)?;

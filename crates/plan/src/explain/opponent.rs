@@ -135,7 +135,7 @@ fn starts(asker: &Asker<'_>, objective: &Objective, path: PathId) -> Option<Vec<
     if !system.is_finite() {
         return None;
     }
-    let graph = asker.graphs.explore(system, STATES)?;
+    let graph = asker.config.graphs.explore(system, STATES)?;
     let (_, others) = others(objective);
     if others.len() > PARTS {
         return None;
