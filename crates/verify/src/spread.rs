@@ -143,9 +143,17 @@ impl Search<'_> {
                     Lead::To { slot, missing } => {
                         kinds.missing |= missing;
                         next.push(slot, mv.to);
-                        if let Some(said) = said(self) {
-                            next.remember(said, mv.deed, slot);
-                            kinds.by_group[index].push(Kind { step, said, slot });
+                        // What decides nothing does so for all that look the same, whether they are paths or not; later it may
+                        // decide.
+                        let decided = slot == Slot::DROPPED && !missing;
+                        let said = if decided { self.levels[0].seen(mv.to) } else { said(self) };
+                        match said.filter(|_| innermost) {
+                            Some(said) if next.known(said, mv.deed).is_none() => {
+                                next.remember(said, mv.deed, slot);
+                                kinds.by_group[index].push(Kind { step, said, slot });
+                            }
+                            Some(_) => {}
+                            None => kinds.lasting = false,
                         }
                     }
                 }
