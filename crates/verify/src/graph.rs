@@ -1,12 +1,11 @@
 //! One system, explored explicitly and lazily: states, moves, and which states can go on.
 
 use crate::eval::{eval, truth};
+use crate::index::Index;
 use crate::report::{Error, Stop};
 use hyperplan_problem::{
     ActionId, Also, Expr, LabelId, Leaf, StepLeaf, System, TransLeaf, Type, Update, Value, VarId,
 };
-use rustc_hash::FxHashMap;
-use std::rc::Rc;
 use typed_index_collections::TiVec;
 
 id! {
@@ -41,9 +40,8 @@ enum Liveness {
 
 #[derive(Debug)]
 struct Node {
-    values: Rc<[Value]>,
-    labels: Rc<[Value]>,
-    moves: Option<Rc<[Move]>>,
+    /// Where its moves begin among all, and how many they are.
+    moves: Option<(usize, u32)>,
     liveness: Liveness,
     /// It can go at least so many steps ...
     at_least: u32,
@@ -64,15 +62,32 @@ type ValueOf<'f, L> = dyn Fn(&Expr<L>) -> Result<Value, Stop> + 'f;
 /// The values that variables may get, each variable at most once.
 type Choices = Vec<(VarId, Vec<Value>)>;
 
-/// Actions that lead to the same values.
-type Target<'p> = (&'p [ActionId], Vec<Value>);
+/// Where the moves from a state lead: actions that lead to the same values, and these, one target after the other.
+#[derive(Debug, Default)]
+struct Targets<'p> {
+    actions: Vec<&'p [ActionId]>,
+    values: Vec<Value>,
+}
+
+impl<'p> Targets<'p> {
+    fn add(&mut self, actions: &'p [ActionId], values: &[Value]) {
+        self.actions.push(actions);
+        self.values.extend_from_slice(values);
+    }
+}
 
 /// The part of a system's transition graph seen so far.
 #[derive(Debug)]
 pub(crate) struct Graph<'p> {
     pub(crate) system: &'p System,
     nodes: TiVec<StateId, Node>,
-    index: FxHashMap<Rc<[Value]>, StateId>,
+    /// Of all states, one after the other: the values of the variables, and of the labels.
+    values: Vec<Value>,
+    labels: Vec<Value>,
+    moves: Vec<Move>,
+    index: Index,
+    /// Room for the targets of a state.
+    targets: Targets<'p>,
     pub(crate) limit: usize,
     /// Whether a variable may become anything between two ends.
     wide: bool,
@@ -118,7 +133,11 @@ impl<'p> Graph<'p> {
         Graph {
             system,
             nodes: TiVec::new(),
-            index: FxHashMap::default(),
+            values: Vec::new(),
+            labels: Vec::new(),
+            moves: Vec::new(),
+            index: Index::new(system),
+            targets: Targets::default(),
             limit: limit.min(u32::MAX as usize - 1),
             wide: system.clauses.iter().flat_map(|clause| &clause.updates).any(|own| is_wide(&own.1))
                 || system.also.iter().flat_map(|also| &also.updates).any(|own| is_wide(&own.1)),
@@ -132,14 +151,13 @@ impl<'p> Graph<'p> {
     }
 
     /// The values of the variables.
-    pub(crate) fn values(&self, state: StateId) -> &Rc<[Value]> {
-        &self.nodes[state].values
+    pub(crate) fn values(&self, state: StateId) -> &[Value] {
+        part(&self.values, state, self.system.vars.len())
     }
 
     /// What a leaf reads.
     pub(crate) fn leaf(&self, state: StateId, leaf: Leaf) -> Option<Value> {
-        let node = &self.nodes[state];
-        read(&node.values, &node.labels, leaf)
+        read(self.values(state), part(&self.labels, state, self.system.labels.len()), leaf)
     }
 
     /// Whether `init` holds.
@@ -155,22 +173,25 @@ impl<'p> Graph<'p> {
 
     /// The id of a state, which must satisfy [`Graph::is_state`].
     pub(crate) fn intern(&mut self, values: &[Value]) -> Result<StateId, Stop> {
-        if let Some(&id) = self.index.get(values) {
+        if let Some(id) = self.index.get(values) {
             return Ok(id);
         }
         if self.nodes.len() >= self.limit {
             return Err(Stop::Budget);
         }
-        let values: Rc<[Value]> = values.into();
-        let mut labels = Vec::with_capacity(self.system.labels.len());
         // A label reads only labels before it.
+        let before = self.labels.len();
         for label in &self.system.labels {
-            let value = eval(&label.expr, &|l| read(&values, &labels, *l));
-            labels.push(value.ok_or_else(|| no_value(self.system))?);
+            match eval(&label.expr, &|l| read(values, &self.labels[before..], *l)) {
+                Some(value) => self.labels.push(value),
+                None => {
+                    self.labels.truncate(before);
+                    return Err(no_value(self.system).into());
+                }
+            }
         }
+        self.values.extend_from_slice(values);
         let id = self.nodes.push_and_get_key(Node {
-            values: values.clone(),
-            labels: labels.into(),
             moves: None,
             liveness: Liveness::Unknown,
             at_least: 0,
@@ -181,23 +202,41 @@ impl<'p> Graph<'p> {
     }
 
     /// The transitions from a state, sorted, without repetition.
-    pub(crate) fn moves(&mut self, state: StateId) -> Result<Rc<[Move]>, Stop> {
-        if let Some(moves) = &self.nodes[state].moves {
-            return Ok(moves.clone());
+    pub(crate) fn moves(&mut self, state: StateId) -> Result<&[Move], Stop> {
+        if self.nodes[state].moves.is_none() {
+            let mut targets = std::mem::take(&mut self.targets);
+            (targets.actions, targets.values) = (cleared(targets.actions), cleared(targets.values));
+            let found = self.list(state, &mut targets);
+            self.targets = targets;
+            self.nodes[state].moves = Some(found?);
         }
+        Ok(self.known_moves(state).unwrap_or_default())
+    }
+
+    /// The same if they were asked for before.
+    fn known_moves(&self, state: StateId) -> Option<&[Move]> {
+        let (first, count) = self.nodes[state].moves?;
+        self.moves.get(first..first + count as usize)
+    }
+
+    /// Adds the transitions from a state to all; where they begin, and how many they are.
+    fn list(&mut self, state: StateId, targets: &mut Targets<'p>) -> Result<(usize, u32), Stop> {
+        self.find_targets(state, targets)?;
         let mut moves = Vec::new();
-        for (actions, target) in self.targets(state)? {
-            if !self.by_trans(state, &target)? {
+        let width = self.system.vars.len();
+        for (at, actions) in targets.actions.iter().enumerate() {
+            let target = &targets.values[at * width..][..width];
+            if !self.by_trans(state, target)? {
                 continue;
             }
-            let to = self.intern(&target)?;
+            let to = self.intern(target)?;
             moves.extend(actions.iter().map(|&action| Move { action, to }));
         }
         moves.sort_unstable();
         moves.dedup();
-        let moves: Rc<[Move]> = moves.into();
-        self.nodes[state].moves = Some(moves.clone());
-        Ok(moves)
+        let first = self.moves.len();
+        self.moves.append(&mut moves);
+        Ok((first, u32::try_from(self.moves.len() - first).map_err(|_| Stop::Budget)?))
     }
 
     /// Where an action can lead.
@@ -207,13 +246,13 @@ impl<'p> Graph<'p> {
 
     /// Whether there is a transition with that action; the state's moves must have been asked for.
     pub(crate) fn enabled(&self, state: StateId, action: ActionId) -> Option<bool> {
-        self.nodes[state].moves.as_ref().map(|moves| moves.iter().any(|m| m.action == action))
+        self.known_moves(state).map(|moves| moves.iter().any(|m| m.action == action))
     }
 
     /// Whether there is a transition between two states, by the definition; without enumerating where else the
     /// action leads.
     pub(crate) fn has_step(&self, from: StateId, action: ActionId, to: StateId) -> Result<bool, Stop> {
-        let (here, there) = (&self.nodes[from].values, &self.nodes[to].values);
+        let (here, there) = (self.values(from), self.values(to));
         if self.holds(from, &self.system.absorb)? {
             return Ok(self.system.actions.contains(&action) && here == there);
         }
@@ -246,7 +285,7 @@ impl<'p> Graph<'p> {
         step: Step,
         there: &[Value],
     ) -> Result<bool, Stop> {
-        let here = &self.nodes[from].values;
+        let here = self.values(from);
         let mut allowed: Vec<Option<bool>> = vec![None; here.len()];
         let mut say = |var: VarId, says: bool| allowed[usize::from(var)] = Some(says);
         for (var, update) in updates {
@@ -287,7 +326,7 @@ impl<'p> Graph<'p> {
         }
         let edges = self.system.edges.as_ref();
         let edge = edges.and_then(|edges| {
-            let node = |state: StateId| position(&self.nodes[state].values, edges.var);
+            let node = |state: StateId| position(self.values(state), edges.var);
             let mut own = edges.numbered(node(from));
             own.find(|(_, edge)| edge.action == action && edge.to == node(to)).map(|(at, _)| at)
         });
@@ -340,68 +379,73 @@ impl<'p> Graph<'p> {
 
     /// Whether no transition leads to another state; the state's moves must have been asked for.
     pub(crate) fn halted(&self, state: StateId) -> Option<bool> {
-        self.nodes[state].moves.as_ref().map(|moves| moves.iter().all(|m| m.to == state))
+        self.known_moves(state).map(|moves| moves.iter().all(|m| m.to == state))
     }
 
     /// Where each group of actions leads.
-    fn targets(&self, state: StateId) -> Result<Vec<Target<'p>>, Stop> {
+    fn find_targets(&self, state: StateId, found: &mut Targets<'p>) -> Result<(), Stop> {
         let system = self.system;
-        let here = &self.nodes[state].values;
+        let here = self.values(state);
         if self.holds(state, &system.absorb)? {
-            return Ok(vec![(&system.actions, here.to_vec())]);
+            found.add(&system.actions, here);
+            return Ok(());
         }
-        let mut found = Vec::new();
         for clause in &system.clauses {
-            if !self.holds(state, &clause.guard)? {
-                continue;
-            }
-            if system.also.is_empty()
-                && let Some(target) = self.certain(state, &clause.updates)?
+            if !self.holds(state, &clause.guard)?
+                || system.also.is_empty() && self.certain(state, (&clause.actions, &clause.updates), found)?
             {
-                found.extend(target.map(|target| (clause.actions.as_slice(), target)));
                 continue;
             }
             let own = self.each(&clause.updates, &|e| self.value(state, e))?;
             if system.also.is_empty() {
                 let targets = self.chosen(state, own)?;
-                found.extend(targets.into_iter().map(|target| (clause.actions.as_slice(), target)));
+                targets.iter().for_each(|target| found.add(&clause.actions, target));
                 continue;
             }
             for action in &clause.actions {
                 let mut all = self.besides(state, Step { action: *action, edge: None })?;
                 all.extend(own.iter().cloned());
                 let targets = self.chosen(state, all)?;
-                found.extend(targets.into_iter().map(|target| (std::slice::from_ref(action), target)));
+                targets.iter().for_each(|target| found.add(std::slice::from_ref(action), target));
             }
         }
-        let Some(edges) = &system.edges else { return Ok(found) };
+        let Some(edges) = &system.edges else { return Ok(()) };
         for ((at, edge), own) in
             edges.numbered(position(here, edges.var)).zip(edges.of(position(here, edges.var)))
         {
             let mut all = self.besides(state, Step { action: edge.action, edge: Some(at) })?;
             all.push((edges.var, vec![Value::Enum(edge.to)]));
             let targets = self.chosen(state, all)?;
-            found.extend(targets.into_iter().map(|target| (std::slice::from_ref(&own.action), target)));
+            targets.iter().for_each(|target| found.add(std::slice::from_ref(&own.action), target));
         }
-        Ok(found)
+        Ok(())
     }
 
-    /// Where updates lead that leave no choice, if anywhere; `None` where one may leave a choice.
+    /// Where updates lead that leave no choice, if anywhere; whether they leave none.
     fn certain(
         &self,
         state: StateId,
-        updates: &[(VarId, Update)],
-    ) -> Result<Option<Option<Vec<Value>>>, Stop> {
-        let mut target = self.nodes[state].values.to_vec();
+        (actions, updates): (&'p [ActionId], &[(VarId, Update)]),
+        found: &mut Targets<'p>,
+    ) -> Result<bool, Stop> {
+        let before = found.values.len();
+        found.values.extend_from_slice(self.values(state));
         let mut fits = true;
         for (var, update) in updates {
-            let Update::Assign(e) = update else { return Ok(None) };
+            let Update::Assign(e) = update else {
+                found.values.truncate(before);
+                return Ok(false);
+            };
             let value = self.value(state, e)?;
             let ty = &self.system.vars.get(*var).ok_or_else(|| no_value(self.system))?.ty;
             fits &= ty.contains(value);
-            target[usize::from(*var)] = value;
+            found.values[before + usize::from(*var)] = value;
         }
-        Ok(Some(fits.then_some(target)))
+        match fits {
+            true => found.actions.push(actions),
+            false => found.values.truncate(before),
+        }
+        Ok(true)
     }
 
     /// What each of some updates allows.
@@ -420,7 +464,7 @@ impl<'p> Graph<'p> {
 
     /// Where a transition leads that makes these choices. What `trans` rules out is left out as soon as that is known.
     fn chosen(&self, state: StateId, mut open: Choices) -> Result<Vec<Vec<Value>>, Stop> {
-        let here = &self.nodes[state].values;
+        let here = self.values(state);
         let mut known: Vec<bool> = vec![true; here.len()];
         for (var, _) in &open {
             known[usize::from(*var)] = false;
@@ -511,10 +555,10 @@ impl<'p> Graph<'p> {
             self.nodes[state].liveness = Liveness::Live;
             return Ok(true);
         }
-        let mut stack = vec![(state, self.moves(state)?, 0_usize)];
+        let mut stack = vec![(state, 0_usize)];
         self.nodes[state].liveness = Liveness::Open;
-        while let Some((here, moves, next)) = stack.last_mut() {
-            let Some(to) = moves.get(*next).map(|m| m.to) else {
+        while let Some((here, next)) = stack.last_mut() {
+            let Some(to) = self.moves(*here)?.get(*next).map(|m| m.to) else {
                 self.nodes[*here].liveness = Liveness::Dead;
                 stack.pop();
                 continue;
@@ -524,11 +568,10 @@ impl<'p> Graph<'p> {
                 Liveness::Dead => {}
                 Liveness::Unknown => {
                     self.nodes[to].liveness = Liveness::Open;
-                    let moves = self.moves(to)?;
-                    stack.push((to, moves, 0));
+                    stack.push((to, 0));
                 }
                 Liveness::Open | Liveness::Live => {
-                    for (open, _, _) in stack {
+                    for (open, _) in stack {
                         self.nodes[open].liveness = Liveness::Live;
                     }
                     return Ok(true);
@@ -566,8 +609,7 @@ impl<'p> Graph<'p> {
                 }
                 return Ok(true);
             }
-            let moves = self.moves(here)?;
-            match moves.get(*next) {
+            match self.moves(here)?.get(*next).copied() {
                 Some(m) if self.nodes[here].at_most >= steps => {
                     *next += 1;
                     stack.push((m.to, steps - 1, 0));
@@ -581,6 +623,17 @@ impl<'p> Graph<'p> {
         }
         Ok(false)
     }
+}
+
+/// A state's part of what is listed for all, so much for each.
+fn part(all: &[Value], state: StateId, width: usize) -> &[Value] {
+    &all[usize::from(state) * width..][..width]
+}
+
+/// The same room, empty.
+fn cleared<T>(mut room: Vec<T>) -> Vec<T> {
+    room.clear();
+    room
 }
 
 fn read(values: &[Value], labels: &[Value], leaf: Leaf) -> Option<Value> {

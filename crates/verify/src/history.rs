@@ -64,8 +64,10 @@ impl Search<'_> {
                 None => members.list(),
             };
             for joint in candidates {
-                for &mv in self.joint_moves(0, joint)?.iter().filter(|mv| mv.to == target.joint) {
-                    if self.follow(0, mv, *value, base)? == Some(target.value) {
+                let moves = self.joint_moves(0, joint)?;
+                for at in 0..moves.len() {
+                    let mv = self.levels[0].joint.at(&moves, at);
+                    if mv.to == target.joint && self.follow(0, mv, *value, base)? == Some(target.value) {
                         return Ok(Some(Step { joint, value: *value, mv }));
                     }
                 }

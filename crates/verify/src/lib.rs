@@ -61,6 +61,7 @@ mod follow;
 mod graph;
 mod history;
 mod horizon;
+mod index;
 mod initial;
 mod joint;
 mod layer;

@@ -129,7 +129,8 @@ impl Search<'_> {
             if self.reached.entries + next.room() > self.budget.entries {
                 return Err(Stop::Budget);
             }
-            for &mv in moves.iter() {
+            for at in 0..moves.len() {
+                let mv = self.levels[0].joint.at(&moves, at);
                 let said = |search: &Self| search.levels[0].said(mv.to).filter(|_| innermost);
                 if let Some(slot) = said(self).and_then(|said| next.known(said, mv.deed)) {
                     next.push(slot, mv.to);

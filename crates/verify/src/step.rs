@@ -1,7 +1,7 @@
 //! One step: how a move of one block changes the values of the levels below it.
 
 use crate::graph::Ahead;
-use crate::joint::{JointId, JointMove};
+use crate::joint::{JointId, JointMove, Moves};
 use crate::level::Level;
 use crate::recent::Look;
 use crate::report::Stop;
@@ -12,7 +12,6 @@ use crate::valuation::ValuationId;
 use crate::value::{Pair, ValueId};
 use hyperplan_problem::{Mode, PathId};
 use rustc_hash::FxHashSet;
-use std::rc::Rc;
 use typed_index_collections::TiVec;
 
 /// How many moves of the first block take as long as one deeper, whose sets are made anew for each move before.
@@ -20,7 +19,7 @@ const DEEPER: usize = 8;
 
 impl Search<'_> {
     /// All joint moves of a block.
-    pub(crate) fn joint_moves(&mut self, level: usize, joint: JointId) -> Result<Rc<[JointMove]>, Stop> {
+    pub(crate) fn joint_moves(&mut self, level: usize, joint: JointId) -> Result<Moves, Stop> {
         let time = u64::from(self.time);
         let ended = |path: PathId| self.ends[path].is_some_and(|end| time > end);
         self.levels[level].joint.moves(&mut self.graphs, joint, &ended)
@@ -127,8 +126,9 @@ impl Search<'_> {
             }
             let moves = self.joint_moves(level, joint)?;
             self.count_moves(moves.len() * DEEPER)?;
-            for mv in moves.iter() {
-                match self.follow(level, *mv, inner, base)? {
+            for at in 0..moves.len() {
+                let mv = self.levels[level].joint.at(&moves, at);
+                match self.follow(level, mv, inner, base)? {
                     Some(v) if v == ValueId::of(decisive) => return Ok(v),
                     Some(v) if v == ValueId::of(!decisive) => {}
                     Some(ValueId::MISSING) => pairs.push((JointId::START, ValueId::MISSING)),
