@@ -6,6 +6,7 @@ use crate::report::{Error, Stop};
 use hyperplan_problem::{
     ActionId, Also, Expr, LabelId, Leaf, StepLeaf, System, TransLeaf, Type, Update, Value, VarId,
 };
+use rustc_hash::FxHashMap;
 use typed_index_collections::TiVec;
 
 id! {
@@ -14,7 +15,7 @@ id! {
 }
 
 /// A transition, seen from its source.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct Move {
     pub(crate) action: ActionId,
     pub(crate) to: StateId,
@@ -86,6 +87,8 @@ pub(crate) struct Graph<'p> {
     labels: Vec<Value>,
     moves: Vec<Move>,
     index: Index,
+    /// The first state with these moves, of those that were asked about.
+    alike: FxHashMap<Box<[Move]>, StateId>,
     /// Room for the targets of a state.
     targets: Targets<'p>,
     pub(crate) limit: usize,
@@ -137,6 +140,7 @@ impl<'p> Graph<'p> {
             labels: Vec::new(),
             moves: Vec::new(),
             index: Index::new(system),
+            alike: FxHashMap::default(),
             targets: Targets::default(),
             limit: limit.min(u32::MAX as usize - 1),
             wide: system.clauses.iter().flat_map(|clause| &clause.updates).any(|own| is_wide(&own.1))
@@ -211,6 +215,12 @@ impl<'p> Graph<'p> {
             self.nodes[state].moves = Some(found?);
         }
         Ok(self.known_moves(state).unwrap_or_default())
+    }
+
+    /// The first state asked about that has the same transitions: from now on they are the same.
+    pub(crate) fn first_alike(&mut self, state: StateId) -> Result<StateId, Stop> {
+        let moves: Box<[Move]> = self.moves(state)?.into();
+        Ok(*self.alike.entry(moves).or_insert(state))
     }
 
     /// The same if they were asked for before.

@@ -46,6 +46,8 @@ pub(crate) struct Joint {
     /// Where the moves of each joint state begin among all, and how many they are.
     moves: TiVec<JointId, Option<(usize, usize)>>,
     all_moves: Vec<JointMove>,
+    /// Of each joint state, the first with the same moves.
+    alike: TiVec<JointId, Option<JointId>>,
     deeds: TiVec<DeedId, Deed>,
     deed_index: FxHashMap<Deed, DeedId>,
     /// Whether all moves were kept.
@@ -88,6 +90,7 @@ impl Joint {
             of_action: TiVec::new(),
             moves: TiVec::from(vec![None]),
             all_moves: Vec::new(),
+            alike: TiVec::new(),
             deeds: TiVec::new(),
             deed_index: FxHashMap::default(),
             complete: true,
@@ -161,6 +164,24 @@ impl Joint {
         self.all_moves.append(&mut moves);
         self.moves[joint] = Some(kept);
         Ok(Moves::Kept(kept.0, kept.1))
+    }
+
+    /// The first joint state whose paths can all move as those of this one, which is not the start.
+    pub(crate) fn representative(
+        &mut self,
+        graphs: &mut TiVec<SystemId, Graph<'_>>,
+        joint: JointId,
+    ) -> Result<JointId, Stop> {
+        if let Some(known) = self.alike.get(joint).copied().flatten() {
+            return Ok(known);
+        }
+        let mut states = self.states(joint).to_vec();
+        for (state, &(_, system)) in states.iter_mut().zip(&self.paths) {
+            *state = graphs[system].first_alike(*state)?;
+        }
+        let first = self.intern(&states)?;
+        note(&mut self.alike, joint, first);
+        Ok(first)
     }
 
     /// One of the moves of a joint state.

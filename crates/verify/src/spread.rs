@@ -143,7 +143,8 @@ impl Search<'_> {
                     Lead::Nowhere => kinds.lasting &= self.mode == Mode::Bounded,
                     Lead::To { slot, missing } => {
                         kinds.missing |= missing;
-                        next.push(slot, mv.to);
+                        let to = if innermost { mv.to } else { self.representative(0, mv.to)? };
+                        next.push(slot, to);
                         // What decides nothing does so for all that look the same, whether they are paths or not; later it may
                         // decide.
                         let decided = slot == Slot::DROPPED && !missing;
