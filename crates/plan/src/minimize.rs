@@ -20,7 +20,7 @@ use crate::decide::SLACKS;
 use crate::fact::{Error, Reason, Unsupported};
 use crate::lasting::{conjuncts, lasting};
 use crate::prepare::is_existential;
-use crate::solve::solve_sharing;
+use crate::solve::{solve_sharing, with_closest};
 use hyperplan_encode::{self as encode, Encoder, Goal, Graphs, Narrowing};
 use hyperplan_problem::{FormulaId, Node, Objective, Problem, Trace};
 use hyperplan_solver::{QuerySize, Unknown};
@@ -355,7 +355,7 @@ impl<'a, E> Minimizer<'a, E> {
                 }
                 Verdict::Unknown => {
                     let reason = solved.outcome.reason.clone().unwrap_or(Reason::Solver(Unknown::Unsaid));
-                    return Ok(self.conclude(best.unwrap_or(solved), Some(reason)));
+                    return Ok(self.conclude(best.or(last).unwrap_or(solved), Some(reason)));
                 }
             }
         }
@@ -388,7 +388,10 @@ impl<'a, E> Minimizer<'a, E> {
 
     fn conclude(self, solved: Solved, undecided: Option<Reason>) -> Least {
         let Solved { value, problem, outcome } = solved;
-        let outcome = self.spent.told(outcome);
+        let mut outcome = self.spent.told(outcome);
+        if let Some(objective) = problem.objective(self.objective) {
+            outcome = with_closest(&problem, objective, outcome, self.config);
+        }
         Least { value, problem, outcome, proved: self.low, undecided }
     }
 }
