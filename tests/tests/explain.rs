@@ -1,10 +1,12 @@
 //! What `explain` says of random problems is so, by brute force: parts exclude each other, and none of them can be left out;
 //! so much more time is enough, and less is not; some choices of the other player defeat every candidate. And the parts that
-//! fail on a candidate or a counterexample fail.
+//! fail on a candidate or a counterexample fail. What is told of candidates where a search was cut off is so, too.
 
-use hyperplan_plan::explain::{Candidate, Choice, Explanation, Later, Opponents, Scope, explain, longer};
-use hyperplan_plan::{Config, Outcome, Verdict, solve};
-use hyperplan_problem::{Problem as Typed, Value};
+use hyperplan_plan::explain::{
+    Choice, Closest, Explanation, Later, Opponents, Scope, closest, explain, longer,
+};
+use hyperplan_plan::{Config, Outcome, Quantifiers, Verdict, solve};
+use hyperplan_problem::{Problem as Typed, Strategy, Value};
 use hyperplan_solver::{Deadline, Spec};
 use hyperplan_tests::brute::{Brute, Path};
 use hyperplan_tests::judge::{lowered, path};
@@ -143,7 +145,10 @@ fn judge(
         seen.opponents += u32::from(defeat_all(problem, &own, opponents, about));
     }
     if let Some(candidate) = &found.candidate {
-        seen.candidates += u32::from(wins(problem, typed, &own, candidate, about));
+        let spared = candidate.spared.as_deref();
+        let checked = spared.and_then(|spared| wins(problem, typed, (&candidate.strategy, spared)));
+        assert_ne!(checked, Some(false), "the candidate does not win: {about}");
+        seen.candidates += u32::from(checked.is_some());
     }
     let candidate = found.candidate.as_ref().map(|candidate| &candidate.failure);
     for failure in candidate.into_iter().chain(&found.counterexample) {
@@ -233,10 +238,9 @@ fn defeat_all(problem: &Problem, own: &[Formula], found: &Opponents, about: &str
     true
 }
 
-/// A candidate wins against all paths that make none of the choices it was spared; whether that was checked.
-fn wins(problem: &Problem, typed: &Typed, own: &[Formula], candidate: &Candidate, about: &str) -> bool {
+/// Whether a candidate wins against all paths that make none of the choices it was spared, if that is not too much.
+fn wins(problem: &Problem, typed: &Typed, (strategy, spared): (&Strategy, &[Choice])) -> Option<bool> {
     let leading = problem.exists.iter().take_while(|&&exists| exists).count();
-    let Some(spared) = &candidate.spared else { return false };
     let excuse = |choice: &Choice| match choice {
         Choice::Start(path, state) => is_state(problem, usize::from(*path), state),
         Choice::Replaced(path, from, step) => {
@@ -245,15 +249,64 @@ fn wins(problem: &Problem, typed: &Typed, own: &[Formula], candidate: &Candidate
             (0..=*step).fold(other, |later, _| Formula::Next(Box::new(later)))
         }
     };
+    let own = conjuncts(&problem.formula);
     let (mut parts, others): (Vec<Formula>, Vec<Formula>) =
-        own.iter().cloned().partition(|part| reads_only(part, leading));
+        own.into_iter().partition(|part| reads_only(part, leading));
     parts.push(Formula::Or(spared.iter().map(excuse).chain([Formula::And(others)]).collect()));
     let weaker = Problem { formula: Formula::And(parts), ..problem.clone() };
-    let Some(brute) = Brute::new(&weaker, MOST) else { return false };
-    let strategy = &candidate.strategy;
+    let brute = Brute::new(&weaker, MOST)?;
     let paths: Vec<Path> = strategy.traces.iter().map(|t| path(&problem.system, typed, t)).collect();
-    assert_eq!(brute.refute(&paths, true), None, "the candidate does not win: {about}");
-    true
+    Some(brute.refute(&paths, true).is_none())
+}
+
+/// Candidates of a search that is over, as if it had been cut off at each of them.
+#[test]
+fn the_closest_candidate_loses_to_what_is_said() {
+    let first = number("HYPERPLAN_SEED", 20_261_129);
+    let cases = number("HYPERPLAN_CASES", 1_500);
+    let (mut strategies, mut starts, mut replaced, mut several, mut silent) = (0, 0, 0, 0, 0);
+    for seed in first..first + cases {
+        let random = &mut Random::new(seed);
+        let mut problem = conflict(random);
+        if problem.exists.len() < 2 {
+            continue;
+        }
+        (problem.exists[0], problem.exists[1]) = (true, false);
+        let typed = lowered(&problem.to_string());
+        let objective = &typed.objectives[0];
+        let config = Config { quantifiers: Quantifiers::Cegis, ..config() };
+        solve(&typed, objective, &config).expect("it is supported");
+        for candidate in config.watch.candidates() {
+            let Some(without) = wins(&problem, &typed, (&candidate, &[])) else { continue };
+            let about = format!("seed {seed}\n{problem}\n{candidate:?}");
+            let Some(Closest { strategy, spared }) = closest(&typed, objective, &[candidate.clone()]) else {
+                assert!(!without, "it wins, and nothing is said: {about}");
+                silent += 1;
+                continue;
+            };
+            assert_eq!((&strategy, without), (&candidate, spared.is_empty()), "{spared:?}: {about}");
+            let won = wins(&problem, &typed, (&candidate, &spared));
+            assert_eq!(won, Some(true), "it does not win without {spared:?}: {about}");
+            for out in 0..spared.len() {
+                let rest = [&spared[..out], &spared[out + 1..]].concat();
+                let won = wins(&problem, &typed, (&candidate, &rest));
+                assert_eq!(won, Some(false), "{out} of {spared:?} need not be left out: {about}");
+            }
+            strategies += u32::from(spared.is_empty());
+            several += u32::from(spared.len() > 1);
+            starts += u32::from(spared.iter().any(|choice| matches!(choice, Choice::Start(..))));
+            replaced += u32::from(spared.iter().any(|choice| matches!(choice, Choice::Replaced(..))));
+        }
+    }
+    say(&format!(
+        "seeds {first}..{}: {strategies} strategies, {starts} candidates that lose to starts, {replaced} to actions, {several} to \
+         several choices, {silent} of which nothing is said",
+        first + cases
+    ));
+    assert!(
+        strategies > 30 && starts > 10 && replaced > 10 && several > 3,
+        "too little for the test to mean something"
+    );
 }
 
 fn is_state(problem: &Problem, path: usize, state: &hyperplan_problem::State) -> Formula {

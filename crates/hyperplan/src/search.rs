@@ -1,8 +1,12 @@
 //! One objective, decided as all doors decide it, and what is told of that.
 
+use hyperplan_plan::explain::Choice;
 use hyperplan_plan::{self as plan, Config, Outcome};
-use hyperplan_problem::answer::{Answer, CostValue, Ordered, Seconds, Size, Solver, to_witness};
-use hyperplan_problem::{Objective, Problem, Target, display};
+use hyperplan_problem::answer::{
+    Answer, Choices, Closest, CostValue, Ordered, Replaced, Seconds, Size, Solver, Start, to_witness,
+    write_state,
+};
+use hyperplan_problem::{Objective, PathId, Problem, Target, display};
 use std::time::Duration;
 
 /// What was found for an objective.
@@ -100,7 +104,30 @@ pub fn answer(
         several: None,
         certificates: Vec::new(),
         case: None,
+        closest: outcome.closest.as_ref().map(|closest| Closest {
+            witness: to_witness(problem, objective, &closest.strategy),
+            spared: choices(problem, objective, &closest.spared),
+        }),
     }
+}
+
+/// Choices of the other player as JSON has them.
+#[must_use]
+pub fn choices(problem: &Problem, objective: &Objective, choices: &[Choice]) -> Choices {
+    let name = |path: PathId| objective.paths[path].name.clone();
+    let mut listed = Choices::default();
+    for choice in choices {
+        match choice {
+            Choice::Start(path, state) => {
+                let system = &problem.systems[objective.paths[*path].system];
+                listed.starts.push(Start { path: name(*path), state: write_state(system, state) });
+            }
+            Choice::Replaced(path, from, time) => {
+                listed.replaced.push(Replaced { path: name(*path), from: name(*from), time: *time });
+            }
+        }
+    }
+    listed
 }
 
 /// To microseconds: what a clock can tell.

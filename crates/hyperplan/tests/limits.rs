@@ -5,7 +5,7 @@ mod common;
 
 use common::{command, text};
 use std::fs;
-use std::io::Read as _;
+use std::io::{BufRead as _, BufReader, Read as _};
 use std::os::unix::process::ExitStatusExt as _;
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
@@ -153,4 +153,47 @@ fn a_long_search_says_how_far_it_is() {
     }
     let (code, _, said) = end(start(&["solve", nested, "--quiet", "--timeout", "2"]), "solve");
     assert_eq!((code, said.contains("after")), (Some(3), false), "{said}");
+}
+
+/// A first candidate wins but where q begins in 2; for that, 13 pigeons would have to fit into 12 holes, which takes long to
+/// refute.
+fn pigeons() -> String {
+    let mut apart = Vec::new();
+    for hole in 0..12 {
+        for (first, second) in (0..13).flat_map(|second| (0..second).map(move |first| (first, second))) {
+            apart.push(format!("!(F[{first},{first}] h[p] == {hole} & F[{second},{second}] h[p] == {hole})"));
+        }
+    }
+    format!(
+        "system Holes {{ state h: 0..11; action go; on go {{ h' in 0..11; }} }}
+         system Other {{ state s: 0..3; action go; on go {{ }} }}
+         objective o {{ exists p: Holes. forall q: Other.
+           F[0,12] h[p] == 5 & (s[q] < 2 -> F[0,12] h[p] == 5) & (s[q] == 2 -> {}) }}",
+        apart.join(" & ")
+    )
+}
+
+#[test]
+fn a_search_that_is_interrupted_tells_of_a_candidate_that_comes_close() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("pigeons.hp");
+    fs::write(&file, pigeons()).expect("writable");
+    for (format, words) in [
+        ("text", "\na candidate for p: it wins against any but q that begins in (s = 2)\np: "),
+        ("json", r#""spared":{"starts":[{"path":"q","state":{"s":2}}],"replaced":[]}"#),
+    ] {
+        let arguments =
+            ["solve", text(&file), "-v", "--quantifiers", "cegis", "--timeout", "60", "--format", format];
+        let mut child =
+            command(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it was built");
+        let lines = BufReader::new(child.stderr.take().expect("piped")).lines();
+        let met = lines.map_while(Result::ok).find(|line| line.contains("candidates so far"));
+        assert!(met.is_some(), "no candidate was met");
+        let sent = Command::new("kill").arg("-INT").arg(child.id().to_string()).status();
+        assert!(sent.is_ok_and(|sent| sent.success()));
+        let mut said = String::new();
+        child.stdout.take().expect("piped").read_to_string(&mut said).expect("it is text");
+        assert_eq!(child.wait().expect("ours").code(), Some(130), "{said}");
+        assert!(said.contains(words), "{said}");
+    }
 }

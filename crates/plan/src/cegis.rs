@@ -15,7 +15,7 @@
 use crate::fact::Reason;
 use crate::oracle::{Dialogue, Oracle, Stop};
 use hyperplan_encode::{Copies, Encoder, Env, Goal, Instance, Known, Narrowing, Query, Relevant};
-use hyperplan_problem::PathId;
+use hyperplan_problem::{Objective, PathId, Strategy};
 use hyperplan_smt::{Model, Term};
 use std::sync::Arc;
 
@@ -24,6 +24,12 @@ const PER_ROUND: usize = 8;
 
 /// The paths of the leading blocks that are known, by path variable.
 pub(crate) type Assignment = Vec<Option<Known>>;
+
+/// What is known of the leading block, as traces.
+pub(crate) fn strategy(objective: &Objective, known: &Assignment) -> Strategy {
+    let trace = |path: PathId| known[usize::from(path)].as_ref().map(|known| known.trace(path));
+    Strategy { traces: objective.leading_block().into_iter().filter_map(trace).collect() }
+}
 
 pub(crate) struct Cegis<'s, 'a, 'c> {
     pub(crate) encoder: &'s Encoder<'a>,
@@ -149,6 +155,9 @@ impl<'s, 'a, 'c> Cegis<'s, 'a, 'c> {
             let candidate =
                 self.assignment(round, &round.first, known, &model)?.ok_or_else(|| self.no_path(round))?;
             if !last {
+                if level == 0 {
+                    self.oracle.met(strategy(self.encoder.objective, &candidate));
+                }
                 if self.refine(round, known, &model)? {
                     continue;
                 }

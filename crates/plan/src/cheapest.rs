@@ -9,7 +9,7 @@
 use crate::config::{Config, Outcome, Quantifiers, Verdict};
 use crate::fact::{Error, Reason};
 use crate::minimize::{Spent, Steps};
-use crate::solve::solve;
+use crate::solve::search_or_race;
 use hyperplan_encode::{self as encode, Among, Encoder, Goal};
 use hyperplan_problem::{Mode, Objective, PathId, Problem, Strategy, Target, bounded, extended};
 use hyperplan_solver::Unknown;
@@ -48,7 +48,7 @@ pub fn cheapest(
     config: &Config,
 ) -> Result<Cheapest, Error> {
     let (objective, time) = to_the_end(problem, objective, targets);
-    let outcome = solve(problem, &objective, config)?;
+    let outcome = search_or_race(problem, &objective, config)?;
     cheaper(Search::new((problem, &objective, time), targets, config, &outcome), outcome)
 }
 
@@ -246,12 +246,12 @@ impl<'a> Search<'a> {
     /// Asks for a strategy of which targets are at most so large.
     fn ask(&mut self, bounds: &[(Target, i64)]) -> Result<Outcome, Error> {
         if bounds.is_empty() {
-            return solve(self.problem, self.objective, self.config);
+            return search_or_race(self.problem, self.objective, self.config);
         }
         if self.one_by_one {
             let among = Among { bounds: bounds.to_vec(), cube: self.config.among.cube.clone() };
             let config = Config { among, ..self.config.clone() };
-            match solve(self.problem, self.objective, &config) {
+            match search_or_race(self.problem, self.objective, &config) {
                 Err(Error::Encode(encode::Error::TooLarge { .. } | encode::Error::NotEnumerable { .. })) => {
                     self.one_by_one = false;
                 }
@@ -261,7 +261,7 @@ impl<'a> Search<'a> {
         let (problem, objective) = bounded(self.problem, self.objective, bounds, self.time);
         // Systems that are bounded otherwise are others, with other states to choose a case by: all cases are looked at.
         let config = Config { among: Among::default(), ..self.config.clone() };
-        let mut outcome = solve(&problem, &objective, &config)?;
+        let mut outcome = search_or_race(&problem, &objective, &config)?;
         for trace in outcome.witness.iter_mut().flat_map(|strategy| &mut strategy.traces) {
             let width = self.problem.systems[self.objective.paths[trace.path].system].vars.len();
             for state in &mut trace.states {

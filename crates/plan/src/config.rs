@@ -1,5 +1,6 @@
 //! What is asked for, and what comes out.
 
+use crate::explain::Closest;
 use crate::fact::{Because, Note, Reason};
 use crate::watch::Watch;
 use hyperplan_encode::{Among, Graphs, Limits};
@@ -89,6 +90,8 @@ pub struct Outcome {
     pub witness: Option<Strategy>,
     /// How the witness was checked.
     pub verified: Option<Verified>,
+    /// Where it is not known whether there is a strategy: a candidate that fails against few choices of the other player only.
+    pub closest: Option<Closest>,
     /// Who answered.
     pub solver: Identity,
     /// How quantifiers were decided.

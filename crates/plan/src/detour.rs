@@ -12,7 +12,7 @@ use crate::explain::as_long;
 use crate::fact::Note;
 use crate::lint::demand::paths as read_paths;
 use crate::prepare::is_existential;
-use crate::solve::solve;
+use crate::solve::search_or_race;
 use hyperplan_problem::{
     Cost, Expr, FormulaId, Interval, Node, Objective, PathId, PathLeaf, Problem, Strategy, System, Target,
     Trace, Type, Value,
@@ -358,7 +358,7 @@ impl<'a> Pass<'a> {
             while let Some(most) = self.longest(best, path).filter(|most| *most > low) {
                 let middle = low + (most - low) / 2;
                 let sooner = self.sooner(best, path, middle);
-                match solve(self.problem, &sooner, self.config) {
+                match search_or_race(self.problem, &sooner, self.config) {
                     Ok(Outcome { verdict: Verdict::Realizable, witness: Some(other), .. }) => {
                         if !self.offer(best, other) {
                             // What is nested in it is met too late.

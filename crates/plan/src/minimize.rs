@@ -19,7 +19,7 @@ use crate::decide::SLACKS;
 use crate::fact::{Error, Reason, Unsupported};
 use crate::lasting::{conjuncts, lasting};
 use crate::prepare::is_existential;
-use crate::solve::solve;
+use crate::solve::{search_or_race, with_closest};
 use hyperplan_encode::{self as encode, Encoder, Goal, Narrowing};
 use hyperplan_problem::{FormulaId, Node, Objective, PathId, Problem, Trace};
 use hyperplan_solver::{QuerySize, Unknown};
@@ -363,7 +363,7 @@ impl<'a, E> Minimizer<'a, E> {
                 }
                 Verdict::Unknown => {
                     let reason = solved.outcome.reason.clone().unwrap_or(Reason::Solver(Unknown::Unsaid));
-                    return Ok(self.conclude(best.unwrap_or(solved), Some(reason)));
+                    return Ok(self.conclude(best.or(last).unwrap_or(solved), Some(reason)));
                 }
             }
         }
@@ -383,8 +383,8 @@ impl<'a, E> Minimizer<'a, E> {
         if let Some(limit) = limit {
             config.deadline = config.deadline.within(limit);
         }
-        let outcome =
-            solve(&problem, objective, &config).map_err(|error| MinimizeError::Solve { value, error })?;
+        let outcome = search_or_race(&problem, objective, &config)
+            .map_err(|error| MinimizeError::Solve { value, error })?;
         self.spent.add(&outcome);
         if outcome.verdict == Verdict::Realizable {
             self.config.watch.tell(|standing| {
@@ -396,7 +396,10 @@ impl<'a, E> Minimizer<'a, E> {
 
     fn conclude(self, solved: Solved, undecided: Option<Reason>) -> Least {
         let Solved { value, problem, outcome } = solved;
-        let outcome = self.spent.told(outcome);
+        let mut outcome = self.spent.told(outcome);
+        if let Some(objective) = problem.objective(self.objective) {
+            outcome = with_closest(&problem, objective, outcome, self.config);
+        }
         Least { value, problem, outcome, proved: self.low, undecided }
     }
 }

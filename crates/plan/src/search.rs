@@ -1,6 +1,6 @@
 //! One solver's search: from an objective to a verified answer.
 
-use crate::cegis::Assignment;
+use crate::cegis::{Assignment, strategy};
 use crate::config::{Config, Outcome, Seconds, States, Verdict};
 use crate::confirm::confirm;
 use crate::decide::Decision;
@@ -10,7 +10,7 @@ use crate::prepare::{decided, is_existential, no_dead_ends, without_paths};
 use crate::watch::Stage;
 use hyperplan_encode::{self as encode, Encoder};
 use hyperplan_problem::answer::ReasonCode;
-use hyperplan_problem::{Objective, PathId, Problem, Strategy};
+use hyperplan_problem::{Objective, PathId, Problem};
 use hyperplan_verify::{Budget, holds_for_all_outcomes};
 use std::time::Instant;
 
@@ -63,6 +63,7 @@ fn attempt(problem: &Problem, objective: &Objective, config: &Config) -> Result<
         horizons: horizons.iter_enumerated().map(|(p, h)| h.steps.map(|_| encoder.task.horizon(p))).collect(),
         witness: None,
         verified: None,
+        closest: None,
         solver: account.solver.clone(),
         quantifiers: decision.quantifiers,
         because: decision.because,
@@ -114,7 +115,7 @@ fn concluded(
     };
     let realizable = found.is_some() == is_existential(encoder.objective);
     outcome.notes.extend(found.iter().flat_map(|known| picked_outcomes(encoder, known)));
-    let witness = found.map(|known| strategy(encoder, &known));
+    let witness = found.map(|known| strategy(encoder.objective, &known));
     if let Some(strategy) = witness.as_ref().filter(|_| config.verify) {
         config.watch.stage(Stage::Verifying);
         let start = Instant::now();
@@ -128,12 +129,6 @@ fn concluded(
     }
     let verdict = if realizable { Verdict::Realizable } else { Verdict::Unrealizable };
     Ok(Outcome { verdict, witness, ..outcome })
-}
-
-fn strategy(encoder: &Encoder<'_>, known: &Assignment) -> Strategy {
-    let objective = encoder.objective;
-    let trace = |path: PathId| known[usize::from(path)].as_ref().map(|known| known.trace(path));
-    Strategy { traces: objective.leading_block().into_iter().filter_map(trace).collect() }
 }
 
 /// What it may cost to find that a note about outcomes is not called for.
@@ -157,7 +152,7 @@ fn picked_outcomes(encoder: &Encoder<'_>, known: &Assignment) -> Vec<Note> {
     if picking.is_empty() {
         return Vec::new();
     }
-    let strategy = strategy(encoder, known);
+    let strategy = strategy(encoder.objective, known);
     if let Ok(Some(true)) = holds_for_all_outcomes(encoder.problem, objective, &strategy, &picking, &OUTCOMES)
     {
         return Vec::new();

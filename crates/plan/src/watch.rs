@@ -1,7 +1,9 @@
 //! How far a search is, told as it goes to whoever watches.
 
+use hyperplan_problem::Strategy;
+use std::collections::VecDeque;
 use std::fmt;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// What is being done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -37,6 +39,8 @@ pub struct Standing {
     pub best: Option<i64>,
     /// Strategies found before, where several are wanted.
     pub strategies: usize,
+    /// Candidates to which the other player had to find an answer.
+    pub candidates: usize,
 }
 
 impl fmt::Display for Standing {
@@ -62,26 +66,57 @@ impl fmt::Display for Standing {
             (checks, variables) => {
                 write!(f, "; queries so far: {checks}, of up to {variables} variables")
             }
+        }?;
+        match self.candidates {
+            0 => Ok(()),
+            candidates => write!(f, "; candidates so far: {candidates}"),
         }
     }
 }
 
+/// The last candidates are the best: they cope with what defeated those before.
+const KEPT: usize = 4;
+
 /// Where a search tells how far it is. Copies share what is told.
 #[derive(Clone, Debug, Default)]
-pub struct Watch(Arc<Mutex<Standing>>);
+pub struct Watch {
+    standing: Arc<Mutex<Standing>>,
+    candidates: Arc<Mutex<VecDeque<Strategy>>>,
+}
 
 impl Watch {
     /// How far it is now.
     #[must_use]
     pub fn standing(&self) -> Standing {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        locked(&self.standing).clone()
+    }
+
+    /// The last candidates for paths of the leading block: what is known of each is that some paths of the other player do not
+    /// defeat it.
+    #[must_use]
+    pub fn candidates(&self) -> Vec<Strategy> {
+        locked(&self.candidates).iter().cloned().collect()
     }
 
     pub(crate) fn tell(&self, tell: impl FnOnce(&mut Standing)) {
-        tell(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner));
+        tell(&mut locked(&self.standing));
     }
 
     pub(crate) fn stage(&self, stage: Stage) {
         self.tell(|standing| standing.stage = stage);
     }
+
+    pub(crate) fn candidate(&self, candidate: Strategy) {
+        self.tell(|standing| standing.candidates += 1);
+        let mut candidates = locked(&self.candidates);
+        if candidates.len() == KEPT {
+            candidates.pop_front();
+        }
+        candidates.push_back(candidate);
+    }
+}
+
+/// What was told is whole even where somebody panicked.
+fn locked<T>(told: &Mutex<T>) -> MutexGuard<'_, T> {
+    told.lock().unwrap_or_else(PoisonError::into_inner)
 }

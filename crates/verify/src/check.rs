@@ -224,9 +224,9 @@ fn defeating(
                 _ => Ahead::Steps(u32::try_from(rest).unwrap_or(u32::MAX)),
             };
             let mut onward = None;
-            for mv in graph.moves(last)?.iter() {
+            for mv in graph.moves(last)?.to_vec() {
                 if graph.can_go(mv.to, ahead)? {
-                    onward = Some(*mv);
+                    onward = Some(mv);
                     break;
                 }
             }

@@ -129,8 +129,9 @@ fn extend(objective: &Objective, trace: &mut Trace, graph: &mut Graph<'_>) -> Re
         return Ok(());
     }
     let here = graph.intern(&last)?;
+    let system = graph.system;
     let moves = graph.moves(here)?;
-    let every = graph.system.actions.iter().all(|a| moves.iter().any(|m| m.action == *a));
+    let every = system.actions.iter().all(|a| moves.iter().any(|m| m.action == *a));
     if every && moves.iter().all(|m| m.to == here) {
         trace.actions.resize(needed, action);
         trace.states.resize(needed + 1, last);

@@ -1,12 +1,13 @@
 //! One system, explored explicitly and lazily: states, moves, and which states can go on.
 
 use crate::eval::{eval, truth};
+use crate::index::Index;
 use crate::report::{Error, Stop};
+use crate::target::{Targets, is_wide, may_become};
 use hyperplan_problem::{
-    ActionId, Also, Expr, LabelId, Leaf, StepLeaf, System, TransLeaf, Type, Update, Value, VarId,
+    ActionId, Also, Expr, LabelId, Leaf, StepLeaf, System, TransLeaf, Update, Value, VarId,
 };
 use rustc_hash::FxHashMap;
-use std::rc::Rc;
 use typed_index_collections::TiVec;
 
 id! {
@@ -15,7 +16,7 @@ id! {
 }
 
 /// A transition, seen from its source.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct Move {
     pub(crate) action: ActionId,
     pub(crate) to: StateId,
@@ -41,9 +42,8 @@ enum Liveness {
 
 #[derive(Debug)]
 struct Node {
-    values: Rc<[Value]>,
-    labels: Rc<[Value]>,
-    moves: Option<Rc<[Move]>>,
+    /// Where its moves begin among all, and how many they are.
+    moves: Option<(usize, u32)>,
     liveness: Liveness,
     /// It can go at least so many steps ...
     at_least: u32,
@@ -53,26 +53,28 @@ struct Node {
 
 /// A transition from a state: its action, and which listed one it is, if it is one.
 #[derive(Clone, Copy, Debug)]
-struct Step {
-    action: ActionId,
-    edge: Option<usize>,
+pub(crate) struct Step {
+    pub(crate) action: ActionId,
+    pub(crate) edge: Option<usize>,
 }
 
 /// How an expression gets its value.
-type ValueOf<'f, L> = dyn Fn(&Expr<L>) -> Result<Value, Stop> + 'f;
-
-/// The values that variables may get, each variable at most once.
-type Choices = Vec<(VarId, Vec<Value>)>;
-
-/// Actions that lead to the same values.
-type Target<'p> = (&'p [ActionId], Vec<Value>);
+pub(crate) type ValueOf<'f, L> = dyn Fn(&Expr<L>) -> Result<Value, Stop> + 'f;
 
 /// The part of a system's transition graph seen so far.
 #[derive(Debug)]
 pub(crate) struct Graph<'p> {
     pub(crate) system: &'p System,
     nodes: TiVec<StateId, Node>,
-    index: FxHashMap<Rc<[Value]>, StateId>,
+    /// Of all states, one after the other: the values of the variables, and of the labels.
+    values: Vec<Value>,
+    labels: Vec<Value>,
+    moves: Vec<Move>,
+    index: Index,
+    /// The first state with these moves, of those that were asked about.
+    alike: FxHashMap<Box<[Move]>, StateId>,
+    /// Room for the targets of a state.
+    targets: Targets<'p>,
     pub(crate) limit: usize,
     /// Whether a variable may become anything between two ends.
     wide: bool,
@@ -118,7 +120,12 @@ impl<'p> Graph<'p> {
         Graph {
             system,
             nodes: TiVec::new(),
-            index: FxHashMap::default(),
+            values: Vec::new(),
+            labels: Vec::new(),
+            moves: Vec::new(),
+            index: Index::new(system),
+            alike: FxHashMap::default(),
+            targets: Targets::default(),
             limit: limit.min(u32::MAX as usize - 1),
             wide: system.clauses.iter().flat_map(|clause| &clause.updates).any(|own| is_wide(&own.1))
                 || system.also.iter().flat_map(|also| &also.updates).any(|own| is_wide(&own.1)),
@@ -132,14 +139,13 @@ impl<'p> Graph<'p> {
     }
 
     /// The values of the variables.
-    pub(crate) fn values(&self, state: StateId) -> &Rc<[Value]> {
-        &self.nodes[state].values
+    pub(crate) fn values(&self, state: StateId) -> &[Value] {
+        part(&self.values, state, self.system.vars.len())
     }
 
     /// What a leaf reads.
     pub(crate) fn leaf(&self, state: StateId, leaf: Leaf) -> Option<Value> {
-        let node = &self.nodes[state];
-        read(&node.values, &node.labels, leaf)
+        read(self.values(state), part(&self.labels, state, self.system.labels.len()), leaf)
     }
 
     /// Whether `init` holds.
@@ -155,22 +161,25 @@ impl<'p> Graph<'p> {
 
     /// The id of a state, which must satisfy [`Graph::is_state`].
     pub(crate) fn intern(&mut self, values: &[Value]) -> Result<StateId, Stop> {
-        if let Some(&id) = self.index.get(values) {
+        if let Some(id) = self.index.get(values) {
             return Ok(id);
         }
         if self.nodes.len() >= self.limit {
             return Err(Stop::Budget);
         }
-        let values: Rc<[Value]> = values.into();
-        let mut labels = Vec::with_capacity(self.system.labels.len());
         // A label reads only labels before it.
+        let before = self.labels.len();
         for label in &self.system.labels {
-            let value = eval(&label.expr, &|l| read(&values, &labels, *l));
-            labels.push(value.ok_or_else(|| no_value(self.system))?);
+            match eval(&label.expr, &|l| read(values, &self.labels[before..], *l)) {
+                Some(value) => self.labels.push(value),
+                None => {
+                    self.labels.truncate(before);
+                    return Err(no_value(self.system).into());
+                }
+            }
         }
+        self.values.extend_from_slice(values);
         let id = self.nodes.push_and_get_key(Node {
-            values: values.clone(),
-            labels: labels.into(),
             moves: None,
             liveness: Liveness::Unknown,
             at_least: 0,
@@ -181,23 +190,47 @@ impl<'p> Graph<'p> {
     }
 
     /// The transitions from a state, sorted, without repetition.
-    pub(crate) fn moves(&mut self, state: StateId) -> Result<Rc<[Move]>, Stop> {
-        if let Some(moves) = &self.nodes[state].moves {
-            return Ok(moves.clone());
+    pub(crate) fn moves(&mut self, state: StateId) -> Result<&[Move], Stop> {
+        if self.nodes[state].moves.is_none() {
+            let mut targets = std::mem::take(&mut self.targets);
+            (targets.actions, targets.values) = (cleared(targets.actions), cleared(targets.values));
+            let found = self.list(state, &mut targets);
+            self.targets = targets;
+            self.nodes[state].moves = Some(found?);
         }
+        Ok(self.known_moves(state).unwrap_or_default())
+    }
+
+    /// The first state asked about that has the same transitions: from now on they are the same.
+    pub(crate) fn first_alike(&mut self, state: StateId) -> Result<StateId, Stop> {
+        let moves: Box<[Move]> = self.moves(state)?.into();
+        Ok(*self.alike.entry(moves).or_insert(state))
+    }
+
+    /// The same if they were asked for before.
+    fn known_moves(&self, state: StateId) -> Option<&[Move]> {
+        let (first, count) = self.nodes[state].moves?;
+        self.moves.get(first..first + count as usize)
+    }
+
+    /// Adds the transitions from a state to all; where they begin, and how many they are.
+    fn list(&mut self, state: StateId, targets: &mut Targets<'p>) -> Result<(usize, u32), Stop> {
+        self.find_targets(state, targets)?;
         let mut moves = Vec::new();
-        for (actions, target) in self.targets(state)? {
-            if !self.by_trans(state, &target)? {
+        let width = self.system.vars.len();
+        for (at, actions) in targets.actions.iter().enumerate() {
+            let target = &targets.values[at * width..][..width];
+            if !self.by_trans(state, target)? {
                 continue;
             }
-            let to = self.intern(&target)?;
+            let to = self.intern(target)?;
             moves.extend(actions.iter().map(|&action| Move { action, to }));
         }
         moves.sort_unstable();
         moves.dedup();
-        let moves: Rc<[Move]> = moves.into();
-        self.nodes[state].moves = Some(moves.clone());
-        Ok(moves)
+        let first = self.moves.len();
+        self.moves.append(&mut moves);
+        Ok((first, u32::try_from(self.moves.len() - first).map_err(|_| Stop::Budget)?))
     }
 
     /// Where an action can lead.
@@ -207,13 +240,13 @@ impl<'p> Graph<'p> {
 
     /// Whether there is a transition with that action; the state's moves must have been asked for.
     pub(crate) fn enabled(&self, state: StateId, action: ActionId) -> Option<bool> {
-        self.nodes[state].moves.as_ref().map(|moves| moves.iter().any(|m| m.action == action))
+        self.known_moves(state).map(|moves| moves.iter().any(|m| m.action == action))
     }
 
     /// Whether there is a transition between two states, by the definition; without enumerating where else the
     /// action leads.
     pub(crate) fn has_step(&self, from: StateId, action: ActionId, to: StateId) -> Result<bool, Stop> {
-        let (here, there) = (&self.nodes[from].values, &self.nodes[to].values);
+        let (here, there) = (self.values(from), self.values(to));
         if self.holds(from, &self.system.absorb)? {
             return Ok(self.system.actions.contains(&action) && here == there);
         }
@@ -246,7 +279,7 @@ impl<'p> Graph<'p> {
         step: Step,
         there: &[Value],
     ) -> Result<bool, Stop> {
-        let here = &self.nodes[from].values;
+        let here = self.values(from);
         let mut allowed: Vec<Option<bool>> = vec![None; here.len()];
         let mut say = |var: VarId, says: bool| allowed[usize::from(var)] = Some(says);
         for (var, update) in updates {
@@ -264,7 +297,7 @@ impl<'p> Graph<'p> {
     }
 
     /// The clauses that add something to an action's transitions from a state that does not absorb.
-    fn also_in(&self, state: StateId, action: ActionId) -> Result<Vec<&'p Also>, Stop> {
+    pub(crate) fn also_in(&self, state: StateId, action: ActionId) -> Result<Vec<&'p Also>, Stop> {
         let mut found = Vec::new();
         for also in &self.system.also {
             if also.actions.contains(&action) && self.holds(state, &also.guard)? {
@@ -287,7 +320,7 @@ impl<'p> Graph<'p> {
         }
         let edges = self.system.edges.as_ref();
         let edge = edges.and_then(|edges| {
-            let node = |state: StateId| position(&self.nodes[state].values, edges.var);
+            let node = |state: StateId| position(self.values(state), edges.var);
             let mut own = edges.numbered(node(from));
             own.find(|(_, edge)| edge.action == action && edge.to == node(to)).map(|(at, _)| at)
         });
@@ -298,7 +331,7 @@ impl<'p> Graph<'p> {
     }
 
     /// The value of an expression over a step from a state.
-    fn step_value(&self, from: StateId, step: Step, e: &Expr<StepLeaf>) -> Result<Value, Stop> {
+    pub(crate) fn step_value(&self, from: StateId, step: Step, e: &Expr<StepLeaf>) -> Result<Value, Stop> {
         let edges = self.system.edges.as_ref().zip(step.edge);
         let read = |leaf: &StepLeaf| match *leaf {
             StepLeaf::State(leaf) => self.leaf(from, leaf),
@@ -330,165 +363,17 @@ impl<'p> Graph<'p> {
         holds.ok_or_else(|| no_value(self.system).into())
     }
 
-    fn value(&self, state: StateId, e: &Expr<Leaf>) -> Result<Value, Stop> {
+    pub(crate) fn value(&self, state: StateId, e: &Expr<Leaf>) -> Result<Value, Stop> {
         eval(e, &|l| self.leaf(state, *l)).ok_or_else(|| no_value(self.system).into())
     }
 
-    fn holds(&self, state: StateId, e: &Expr<Leaf>) -> Result<bool, Stop> {
+    pub(crate) fn holds(&self, state: StateId, e: &Expr<Leaf>) -> Result<bool, Stop> {
         truth(e, &|l| self.leaf(state, *l)).ok_or_else(|| no_value(self.system).into())
     }
 
     /// Whether no transition leads to another state; the state's moves must have been asked for.
     pub(crate) fn halted(&self, state: StateId) -> Option<bool> {
-        self.nodes[state].moves.as_ref().map(|moves| moves.iter().all(|m| m.to == state))
-    }
-
-    /// Where each group of actions leads.
-    fn targets(&self, state: StateId) -> Result<Vec<Target<'p>>, Stop> {
-        let system = self.system;
-        let here = &self.nodes[state].values;
-        if self.holds(state, &system.absorb)? {
-            return Ok(vec![(&system.actions, here.to_vec())]);
-        }
-        let mut found = Vec::new();
-        for clause in &system.clauses {
-            if !self.holds(state, &clause.guard)? {
-                continue;
-            }
-            if system.also.is_empty()
-                && let Some(target) = self.certain(state, &clause.updates)?
-            {
-                found.extend(target.map(|target| (clause.actions.as_slice(), target)));
-                continue;
-            }
-            let own = self.each(&clause.updates, &|e| self.value(state, e))?;
-            if system.also.is_empty() {
-                let targets = self.chosen(state, own)?;
-                found.extend(targets.into_iter().map(|target| (clause.actions.as_slice(), target)));
-                continue;
-            }
-            for action in &clause.actions {
-                let mut all = self.besides(state, Step { action: *action, edge: None })?;
-                all.extend(own.iter().cloned());
-                let targets = self.chosen(state, all)?;
-                found.extend(targets.into_iter().map(|target| (std::slice::from_ref(action), target)));
-            }
-        }
-        let Some(edges) = &system.edges else { return Ok(found) };
-        for ((at, edge), own) in
-            edges.numbered(position(here, edges.var)).zip(edges.of(position(here, edges.var)))
-        {
-            let mut all = self.besides(state, Step { action: edge.action, edge: Some(at) })?;
-            all.push((edges.var, vec![Value::Enum(edge.to)]));
-            let targets = self.chosen(state, all)?;
-            found.extend(targets.into_iter().map(|target| (std::slice::from_ref(&own.action), target)));
-        }
-        Ok(found)
-    }
-
-    /// Where updates lead that leave no choice, if anywhere; `None` where one may leave a choice.
-    fn certain(
-        &self,
-        state: StateId,
-        updates: &[(VarId, Update)],
-    ) -> Result<Option<Option<Vec<Value>>>, Stop> {
-        let mut target = self.nodes[state].values.to_vec();
-        let mut fits = true;
-        for (var, update) in updates {
-            let Update::Assign(e) = update else { return Ok(None) };
-            let value = self.value(state, e)?;
-            let ty = &self.system.vars.get(*var).ok_or_else(|| no_value(self.system))?.ty;
-            fits &= ty.contains(value);
-            target[usize::from(*var)] = value;
-        }
-        Ok(Some(fits.then_some(target)))
-    }
-
-    /// What each of some updates allows.
-    fn each<L>(&self, updates: &[(VarId, Update<L>)], value: &ValueOf<'_, L>) -> Result<Choices, Stop> {
-        updates.iter().map(|(var, update)| Ok((*var, self.choices(*var, update, value)?))).collect()
-    }
-
-    /// What a step from a state does besides.
-    fn besides(&self, from: StateId, step: Step) -> Result<Choices, Stop> {
-        let mut all = Choices::new();
-        for also in self.also_in(from, step.action)? {
-            all.extend(self.each(&also.updates, &|e| self.step_value(from, step, e))?);
-        }
-        Ok(all)
-    }
-
-    /// Where a transition leads that makes these choices. What `trans` rules out is left out as soon as that is known.
-    fn chosen(&self, state: StateId, mut open: Choices) -> Result<Vec<Vec<Value>>, Stop> {
-        let here = &self.nodes[state].values;
-        let mut known: Vec<bool> = vec![true; here.len()];
-        for (var, _) in &open {
-            known[usize::from(*var)] = false;
-        }
-        open.sort_by_key(|(_, choices)| choices.len());
-        let mut targets = vec![here.to_vec()];
-        for (var, choices) in open {
-            known[usize::from(var)] = true;
-            let mut longer = Vec::new();
-            for target in &targets {
-                for &choice in &choices {
-                    let target = with(target, var, choice);
-                    if self.may_step(state, &target, &known) {
-                        longer.push(target);
-                    }
-                }
-                if longer.len() > self.limit {
-                    return Err(Stop::Budget);
-                }
-            }
-            targets = longer;
-        }
-        Ok(targets)
-    }
-
-    /// Whether `trans` can hold of a step to these values, as far as they are known.
-    fn may_step(&self, from: StateId, there: &[Value], known: &[bool]) -> bool {
-        if self.system.trans.is_true() {
-            return true;
-        }
-        let there: Vec<Option<Value>> =
-            there.iter().zip(known).map(|(value, known)| known.then_some(*value)).collect();
-        let mut labels: Vec<Option<Value>> = Vec::with_capacity(self.system.labels.len());
-        let after = |labels: &[Option<Value>], leaf| match leaf {
-            Leaf::Var(v) => there.get(usize::from(v)).copied().flatten(),
-            Leaf::Label(l) => labels.get(usize::from(l)).copied().flatten(),
-        };
-        for label in &self.system.labels {
-            let value = eval(&label.expr, &|l| after(&labels, *l));
-            labels.push(value);
-        }
-        let holds = truth(&self.system.trans, &|leaf| match *leaf {
-            TransLeaf::Before(leaf) => self.leaf(from, leaf),
-            TransLeaf::After(leaf) => after(&labels, leaf),
-        });
-        holds != Some(false)
-    }
-
-    /// What an update allows, within the variable's type. Of real numbers there are too many between two.
-    fn choices<L>(&self, var: VarId, update: &Update<L>, value: &ValueOf<'_, L>) -> Result<Vec<Value>, Stop> {
-        let ty = &self.system.vars.get(var).ok_or_else(|| no_value(self.system))?.ty;
-        let mut values = match applied(update, value)? {
-            Update::If(..) => Vec::new(),
-            Update::Assign(e) => vec![value(e)?],
-            Update::OneOf(es) => es.iter().map(value).collect::<Result<_, _>>()?,
-            Update::Within(lo, hi) => match (ty, value(lo)?, value(hi)?) {
-                (Type::Range { lo: least, hi: most }, Value::Int(lo), Value::Int(hi)) => {
-                    integers(lo.max(*least), hi.min(*most), self.limit)?
-                }
-                (Type::Int, Value::Int(lo), Value::Int(hi)) => integers(lo, hi, self.limit)?,
-                (Type::Real, lo, hi) if lo > hi => Vec::new(),
-                (Type::Real, lo, hi) if lo == hi => vec![lo],
-                (Type::Real, _, _) => return Err(Stop::Budget),
-                _ => return Err(no_value(self.system).into()),
-            },
-        };
-        values.retain(|v| ty.contains(*v));
-        Ok(values)
+        self.known_moves(state).map(|moves| moves.iter().all(|m| m.to == state))
     }
 
     /// Whether a prefix that ends here can go on so far.
@@ -511,10 +396,10 @@ impl<'p> Graph<'p> {
             self.nodes[state].liveness = Liveness::Live;
             return Ok(true);
         }
-        let mut stack = vec![(state, self.moves(state)?, 0_usize)];
+        let mut stack = vec![(state, 0_usize)];
         self.nodes[state].liveness = Liveness::Open;
-        while let Some((here, moves, next)) = stack.last_mut() {
-            let Some(to) = moves.get(*next).map(|m| m.to) else {
+        while let Some((here, next)) = stack.last_mut() {
+            let Some(to) = self.moves(*here)?.get(*next).map(|m| m.to) else {
                 self.nodes[*here].liveness = Liveness::Dead;
                 stack.pop();
                 continue;
@@ -524,11 +409,10 @@ impl<'p> Graph<'p> {
                 Liveness::Dead => {}
                 Liveness::Unknown => {
                     self.nodes[to].liveness = Liveness::Open;
-                    let moves = self.moves(to)?;
-                    stack.push((to, moves, 0));
+                    stack.push((to, 0));
                 }
                 Liveness::Open | Liveness::Live => {
-                    for (open, _, _) in stack {
+                    for (open, _) in stack {
                         self.nodes[open].liveness = Liveness::Live;
                     }
                     return Ok(true);
@@ -566,8 +450,7 @@ impl<'p> Graph<'p> {
                 }
                 return Ok(true);
             }
-            let moves = self.moves(here)?;
-            match moves.get(*next) {
+            match self.moves(here)?.get(*next).copied() {
                 Some(m) if self.nodes[here].at_most >= steps => {
                     *next += 1;
                     stack.push((m.to, steps - 1, 0));
@@ -583,6 +466,17 @@ impl<'p> Graph<'p> {
     }
 }
 
+/// A state's part of what is listed for all, so much for each.
+fn part(all: &[Value], state: StateId, width: usize) -> &[Value] {
+    &all[usize::from(state) * width..][..width]
+}
+
+/// The same room, empty.
+fn cleared<T>(mut room: Vec<T>) -> Vec<T> {
+    room.clear();
+    room
+}
+
 fn read(values: &[Value], labels: &[Value], leaf: Leaf) -> Option<Value> {
     match leaf {
         Leaf::Var(v) => values.get(usize::from(v)).copied(),
@@ -590,61 +484,10 @@ fn read(values: &[Value], labels: &[Value], leaf: Leaf) -> Option<Value> {
     }
 }
 
-/// The part of an update that applies: beside the first of its conditions that holds.
-fn applied<'u, L>(mut update: &'u Update<L>, value: &ValueOf<'_, L>) -> Result<&'u Update<L>, Stop> {
-    'inside: while let Update::If(branches, last) = update {
-        for (condition, branch) in branches {
-            if value(condition)? == Value::Bool(true) {
-                update = branch;
-                continue 'inside;
-            }
-        }
-        update = last;
-    }
-    Ok(update)
-}
-
-/// Whether an update allows, somewhere, all that lies between two ends.
-fn is_wide<L>(update: &Update<L>) -> bool {
-    match update {
-        Update::Assign(_) | Update::OneOf(_) => false,
-        Update::Within(..) => true,
-        Update::If(branches, last) => branches.iter().any(|(_, branch)| is_wide(branch)) || is_wide(last),
-    }
-}
-
-/// Whether a variable may get this value of its type.
-fn may_become<L>(update: &Update<L>, new: Value, value: &ValueOf<'_, L>) -> Result<bool, Stop> {
-    match applied(update, value)? {
-        Update::If(..) => Ok(false),
-        Update::Assign(e) => Ok(value(e)? == new),
-        Update::OneOf(es) => {
-            let values: Vec<Value> = es.iter().map(value).collect::<Result<_, _>>()?;
-            Ok(values.contains(&new))
-        }
-        Update::Within(lo, hi) => Ok(value(lo)? <= new && new <= value(hi)?),
-    }
-}
-
 /// Where an enumeration's value stands in it; of another type, which no lowered problem has there, nowhere.
-fn position(values: &[Value], var: VarId) -> u32 {
+pub(crate) fn position(values: &[Value], var: VarId) -> u32 {
     match values.get(usize::from(var)) {
         Some(Value::Enum(position)) => *position,
         _ => u32::MAX,
     }
-}
-
-fn with(values: &[Value], var: VarId, value: Value) -> Vec<Value> {
-    let mut values = values.to_vec();
-    values[usize::from(var)] = value;
-    values
-}
-
-/// The integers `lo..=hi`, if there are no more than `limit`.
-pub(crate) fn integers(lo: i64, hi: i64, limit: usize) -> Result<Vec<Value>, Stop> {
-    let count = (i128::from(hi) - i128::from(lo) + 1).max(0);
-    if count > limit as i128 {
-        return Err(Stop::Budget);
-    }
-    Ok((lo..=hi).map(Value::Int).collect())
 }

@@ -56,6 +56,8 @@ impl Search<'_> {
         sources: Option<&TiSlice<JointId, Vec<JointId>>>,
     ) -> Result<Option<Step>, Stop> {
         let base = self.enter()?;
+        let innermost = self.levels.len() == 1;
+        let sources = sources.filter(|_| innermost);
         for (value, members) in layer {
             let candidates = match sources {
                 Some(sources) => {
@@ -64,8 +66,11 @@ impl Search<'_> {
                 None => members.list(),
             };
             for joint in candidates {
-                for &mv in self.joint_moves(0, joint)?.iter().filter(|mv| mv.to == target.joint) {
-                    if self.follow(0, mv, *value, base)? == Some(target.value) {
+                let moves = self.joint_moves(0, joint)?;
+                for at in 0..moves.len() {
+                    let mv = self.levels[0].joint.at(&moves, at);
+                    let to = if innermost { mv.to } else { self.representative(0, mv.to)? };
+                    if to == target.joint && self.follow(0, mv, *value, base)? == Some(target.value) {
                         return Ok(Some(Step { joint, value: *value, mv }));
                     }
                 }

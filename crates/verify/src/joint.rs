@@ -37,22 +37,44 @@ type Deed = Rc<[Option<ActionId>]>;
 pub(crate) struct Joint {
     /// The path variables and their systems.
     pub(crate) paths: Vec<(PathId, SystemId)>,
-    states: TiVec<JointId, Rc<[StateId]>>,
-    state_index: FxHashMap<Rc<[StateId]>, JointId>,
+    /// Of all joint states but the start, one after the other.
+    states: Vec<StateId>,
+    state_index: FxHashMap<Box<[StateId]>, JointId>,
     /// Of a single path, the joint state of each state, and the deed of each action, instead.
     of_state: TiVec<StateId, Option<JointId>>,
     of_action: TiVec<ActionId, Option<DeedId>>,
-    moves: TiVec<JointId, Option<Rc<[JointMove]>>>,
+    /// Where the moves of each joint state begin among all, and how many they are.
+    moves: TiVec<JointId, Option<(usize, usize)>>,
+    all_moves: Vec<JointMove>,
+    /// Of each joint state, the first with the same moves.
+    alike: TiVec<JointId, Option<JointId>>,
     deeds: TiVec<DeedId, Deed>,
     deed_index: FxHashMap<Deed, DeedId>,
-    remembered: usize,
-    /// Whether all were kept.
+    /// Whether all moves were kept.
     complete: bool,
     limit: usize,
 }
 
 /// How many joint moves of a block are kept; others are computed again.
 const REMEMBERED_MOVES: usize = 10_000_000;
+
+/// The moves of a joint state.
+#[derive(Clone, Debug)]
+pub(crate) enum Moves {
+    /// Where they begin among those that are kept, and how many they are.
+    Kept(usize, usize),
+    /// They are not kept.
+    Once(Vec<JointMove>),
+}
+
+impl Moves {
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Moves::Kept(_, count) => *count,
+            Moves::Once(moves) => moves.len(),
+        }
+    }
+}
 
 /// The ways in which one path of a block can move.
 type Options = Vec<(Option<ActionId>, StateId)>;
@@ -62,15 +84,15 @@ impl Joint {
     pub(crate) fn new(paths: Vec<(PathId, SystemId)>, limit: usize) -> Self {
         Joint {
             paths,
-            // The start has no states; its entry keeps ids and indices in step.
-            states: TiVec::from(vec![Rc::from([])]),
+            states: Vec::new(),
             state_index: FxHashMap::default(),
             of_state: TiVec::new(),
             of_action: TiVec::new(),
             moves: TiVec::from(vec![None]),
+            all_moves: Vec::new(),
+            alike: TiVec::new(),
             deeds: TiVec::new(),
             deed_index: FxHashMap::default(),
-            remembered: 0,
             complete: true,
             limit: limit.min(u32::MAX as usize - 1),
         }
@@ -78,7 +100,7 @@ impl Joint {
 
     /// Number of joint states seen.
     pub(crate) fn len(&self) -> usize {
-        self.states.len()
+        self.moves.len()
     }
 
     /// Number of deeds seen.
@@ -88,7 +110,8 @@ impl Joint {
 
     /// The states of the paths, in order; none at the start.
     pub(crate) fn states(&self, joint: JointId) -> &[StateId] {
-        &self.states[joint]
+        let width = self.paths.len();
+        usize::from(joint).checked_sub(1).map_or(&[], |before| &self.states[before * width..][..width])
     }
 
     /// What each path just did.
@@ -98,9 +121,9 @@ impl Joint {
 
     /// By joint state, those whose moves lead there; `None` where not all moves tried are kept.
     pub(crate) fn sources(&self) -> Option<TiVec<JointId, Vec<JointId>>> {
-        let mut sources: TiVec<JointId, Vec<JointId>> = self.states.iter().map(|_| Vec::new()).collect();
+        let mut sources: TiVec<JointId, Vec<JointId>> = self.moves.iter().map(|_| Vec::new()).collect();
         for (from, moves) in self.moves.iter_enumerated() {
-            for mv in moves.iter().flat_map(|moves| moves.iter()) {
+            for mv in moves.iter().flat_map(|(first, count)| &self.all_moves[*first..][..*count]) {
                 if sources[mv.to].last() != Some(&from) {
                     sources[mv.to].push(from);
                 }
@@ -115,13 +138,69 @@ impl Joint {
         graphs: &mut TiVec<SystemId, Graph<'_>>,
         joint: JointId,
         ended: &dyn Fn(PathId) -> bool,
-    ) -> Result<Rc<[JointMove]>, Stop> {
+    ) -> Result<Moves, Stop> {
         let some_ended = self.paths.iter().any(|&(path, _)| ended(path));
-        if let Some(moves) = self.moves[joint].as_ref().filter(|_| !some_ended) {
-            return Ok(moves.clone());
+        if let Some((first, count)) = self.moves[joint].filter(|_| !some_ended) {
+            return Ok(Moves::Kept(first, count));
         }
+        let mut moves = Vec::new();
+        match (self.paths.as_slice(), self.states(joint)) {
+            ([(_, system)], &[state]) if !some_ended => {
+                for one in graphs[*system].moves(state)? {
+                    let deed = self.intern_deed(&[Some(one.action)]);
+                    moves.push(JointMove { deed, to: self.intern(&[one.to])? });
+                }
+            }
+            _ => {
+                let options = self.options(graphs, joint, ended)?;
+                self.product(&options, &mut moves)?;
+            }
+        }
+        if some_ended || self.all_moves.len() + moves.len() > REMEMBERED_MOVES {
+            self.complete = false;
+            return Ok(Moves::Once(moves));
+        }
+        let kept = (self.all_moves.len(), moves.len());
+        self.all_moves.append(&mut moves);
+        self.moves[joint] = Some(kept);
+        Ok(Moves::Kept(kept.0, kept.1))
+    }
+
+    /// The first joint state whose paths can all move as those of this one, which is not the start.
+    pub(crate) fn representative(
+        &mut self,
+        graphs: &mut TiVec<SystemId, Graph<'_>>,
+        joint: JointId,
+    ) -> Result<JointId, Stop> {
+        if let Some(known) = self.alike.get(joint).copied().flatten() {
+            return Ok(known);
+        }
+        let mut states = self.states(joint).to_vec();
+        for (state, &(_, system)) in states.iter_mut().zip(&self.paths) {
+            *state = graphs[system].first_alike(*state)?;
+        }
+        let first = self.intern(&states)?;
+        note(&mut self.alike, joint, first);
+        Ok(first)
+    }
+
+    /// One of the moves of a joint state.
+    pub(crate) fn at(&self, moves: &Moves, index: usize) -> JointMove {
+        match moves {
+            Moves::Kept(first, _) => self.all_moves[first + index],
+            Moves::Once(moves) => moves[index],
+        }
+    }
+
+    /// How each path can move.
+    fn options(
+        &self,
+        graphs: &mut TiVec<SystemId, Graph<'_>>,
+        joint: JointId,
+        ended: &dyn Fn(PathId) -> bool,
+    ) -> Result<Vec<Options>, Stop> {
         let mut options: Vec<Options> = Vec::with_capacity(self.paths.len());
-        let states = self.states[joint].clone();
+        let states = self.states(joint);
         for (i, &(path, system)) in self.paths.iter().enumerate() {
             let graph = &mut graphs[system];
             options.push(match states.get(i) {
@@ -130,22 +209,15 @@ impl Joint {
                 None => graph.initial_states()?.into_iter().map(|state| (None, state)).collect(),
             });
         }
-        let moves = self.product(&options)?;
-        if !some_ended && self.remembered + moves.len() <= REMEMBERED_MOVES {
-            self.remembered += moves.len();
-            self.moves[joint] = Some(moves.clone());
-        } else {
-            self.complete = false;
-        }
-        Ok(moves)
+        Ok(options)
     }
 
-    fn product(&mut self, options: &[Options]) -> Result<Rc<[JointMove]>, Stop> {
+    fn product(&mut self, options: &[Options], moves: &mut Vec<JointMove>) -> Result<(), Stop> {
         let count = options.iter().try_fold(1_usize, |n, o| n.checked_mul(o.len())).ok_or(Stop::Budget)?;
         if count > self.limit.saturating_mul(4) {
             return Err(Stop::Budget);
         }
-        let mut moves = Vec::with_capacity(count);
+        moves.reserve(count);
         let mut actions = Vec::with_capacity(options.len());
         let mut targets = Vec::with_capacity(options.len());
         for number in 0..count {
@@ -160,7 +232,7 @@ impl Joint {
             }
             moves.push(JointMove { deed: self.intern_deed(&actions), to: self.intern(&targets)? });
         }
-        Ok(moves.into())
+        Ok(())
     }
 
     fn intern(&mut self, states: &[StateId]) -> Result<JointId, Stop> {
@@ -171,16 +243,15 @@ impl Joint {
         if let Some(id) = known {
             return Ok(id);
         }
-        if self.states.len() > self.limit {
+        if self.moves.len() > self.limit {
             return Err(Stop::Budget);
         }
-        let shared: Rc<[StateId]> = states.into();
-        let id = self.states.push_and_get_key(shared.clone());
-        self.moves.push(None);
+        self.states.extend_from_slice(states);
+        let id = self.moves.push_and_get_key(None);
         match *states {
             [only] => note(&mut self.of_state, only, id),
             _ => {
-                self.state_index.insert(shared, id);
+                self.state_index.insert(states.into(), id);
             }
         }
         Ok(id)

@@ -47,10 +47,12 @@ impl Level {
 
     /// What is remembered of what the state atoms say in a viable state, where they and the deed say it all.
     pub(crate) fn said(&self, state: JointId) -> Option<ValuationId> {
-        if !self.mixed_atoms.is_empty() || !*self.viable.get(state)? {
-            return None;
-        }
-        *self.by_state.get(state)?
+        self.seen(state).filter(|_| self.viable.get(state).is_some_and(|viable| *viable))
+    }
+
+    /// The same in any state.
+    pub(crate) fn seen(&self, state: JointId) -> Option<ValuationId> {
+        self.by_state.get(state).copied().flatten().filter(|_| self.mixed_atoms.is_empty())
     }
 
     /// Forgets what holds for one step only.

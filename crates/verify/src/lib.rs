@@ -61,6 +61,7 @@ mod follow;
 mod graph;
 mod history;
 mod horizon;
+mod index;
 mod initial;
 mod joint;
 mod layer;
@@ -76,6 +77,7 @@ mod scene;
 mod search;
 mod spread;
 mod step;
+mod target;
 #[cfg(test)]
 mod tests;
 mod valuation;

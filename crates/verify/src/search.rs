@@ -37,6 +37,8 @@ pub(crate) struct Search<'p> {
     pub(crate) progress: Progress,
     pub(crate) valuations: Valuations,
     pub(crate) recent: Recent,
+    /// By time, the values of residuals that read given traces only.
+    pub(crate) given: FxHashMap<(u32, ResidualId), ResidualId>,
     pub(crate) systems: TiVec<PathId, SystemId>,
     pub(crate) mode: Mode,
     /// Where paths of systems with infinitely many states end, where there is no `within`: at their horizon.
@@ -79,6 +81,7 @@ impl<'p> Search<'p> {
             fixed_atoms: atoms.iter_enumerated().filter(|(_, a)| is_fixed(a)).map(|(id, _)| id).collect(),
             valuations: Valuations::new(atoms.len()),
             recent: Recent::new(),
+            given: FxHashMap::default(),
             reads_enabled: atoms.iter().any(|a| a.reads_enabled),
             atoms,
             residuals,
@@ -133,7 +136,13 @@ impl<'p> Search<'p> {
         }
         self.memo.clear();
         self.levels[0].forget();
-        let time = self.time as usize;
+        self.place_fixed(self.time)?;
+        Ok(self.fixed_part())
+    }
+
+    /// Puts the fixed traces where they are at a time.
+    pub(crate) fn place_fixed(&mut self, time: u32) -> Result<(), Stop> {
+        let time = time as usize;
         for trace in &self.fixed {
             let state = trace.states.get(time).copied();
             self.states[trace.path] = state;
@@ -142,7 +151,7 @@ impl<'p> Search<'p> {
                 self.graphs[self.systems[trace.path]].moves(state)?;
             }
         }
-        Ok(self.fixed_part())
+        Ok(())
     }
 }
 

@@ -129,7 +129,8 @@ impl Search<'_> {
             if self.reached.entries + next.room() > self.budget.entries {
                 return Err(Stop::Budget);
             }
-            for &mv in moves.iter() {
+            for at in 0..moves.len() {
+                let mv = self.levels[0].joint.at(&moves, at);
                 let said = |search: &Self| search.levels[0].said(mv.to).filter(|_| innermost);
                 if let Some(slot) = said(self).and_then(|said| next.known(said, mv.deed)) {
                     next.push(slot, mv.to);
@@ -142,10 +143,19 @@ impl Search<'_> {
                     Lead::Nowhere => kinds.lasting &= self.mode == Mode::Bounded,
                     Lead::To { slot, missing } => {
                         kinds.missing |= missing;
-                        next.push(slot, mv.to);
-                        if let Some(said) = said(self) {
-                            next.remember(said, mv.deed, slot);
-                            kinds.by_group[index].push(Kind { step, said, slot });
+                        let to = if innermost { mv.to } else { self.representative(0, mv.to)? };
+                        next.push(slot, to);
+                        // What decides nothing does so for all that look the same, whether they are paths or not; later it may
+                        // decide.
+                        let decided = slot == Slot::DROPPED && !missing;
+                        let said = if decided { self.levels[0].seen(mv.to) } else { said(self) };
+                        match said.filter(|_| innermost) {
+                            Some(said) if next.known(said, mv.deed).is_none() => {
+                                next.remember(said, mv.deed, slot);
+                                kinds.by_group[index].push(Kind { step, said, slot });
+                            }
+                            Some(_) => {}
+                            None => kinds.lasting = false,
                         }
                     }
                 }

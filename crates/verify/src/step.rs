@@ -1,7 +1,7 @@
 //! One step: how a move of one block changes the values of the levels below it.
 
 use crate::graph::Ahead;
-use crate::joint::{JointId, JointMove};
+use crate::joint::{JointId, JointMove, Moves};
 use crate::level::Level;
 use crate::recent::Look;
 use crate::report::Stop;
@@ -12,7 +12,6 @@ use crate::valuation::ValuationId;
 use crate::value::{Pair, ValueId};
 use hyperplan_problem::{Mode, PathId};
 use rustc_hash::FxHashSet;
-use std::rc::Rc;
 use typed_index_collections::TiVec;
 
 /// How many moves of the first block take as long as one deeper, whose sets are made anew for each move before.
@@ -20,7 +19,7 @@ const DEEPER: usize = 8;
 
 impl Search<'_> {
     /// All joint moves of a block.
-    pub(crate) fn joint_moves(&mut self, level: usize, joint: JointId) -> Result<Rc<[JointMove]>, Stop> {
+    pub(crate) fn joint_moves(&mut self, level: usize, joint: JointId) -> Result<Moves, Stop> {
         let time = u64::from(self.time);
         let ended = |path: PathId| self.ends[path].is_some_and(|end| time > end);
         self.levels[level].joint.moves(&mut self.graphs, joint, &ended)
@@ -54,7 +53,11 @@ impl Search<'_> {
         }
         self.place(level, mv)?;
         let valuation = self.valuation(level, mv, base);
-        let value = self.advance(level + 1, inner, valuation)?;
+        let mut value = self.advance(level + 1, inner, valuation)?;
+        let given = level == 0 && innermost && self.is_given(value);
+        if given {
+            value = self.settle(ResidualId(value.0))?;
+        }
         // What decides nothing need not be a path.
         if value == ValueId::of(!self.levels[level].decisive) {
             return Ok(Some(value));
@@ -62,10 +65,53 @@ impl Search<'_> {
         if !self.goes_on(level, mv)? {
             return Ok(None);
         }
-        if let Some(look) = look(self) {
+        // What was settled looked ahead, and the next time may look like this one.
+        if !given && let Some(look) = look(self) {
             self.recent.put(look, value);
         }
         Ok(Some(value))
+    }
+
+    /// Whether a value below the only block is a residual that reads nothing of that block any more.
+    fn is_given(&mut self, value: ValueId) -> bool {
+        !value.is_constant()
+            && !self.levels[0].joint.paths.is_empty()
+            && !self.reads_innermost(ResidualId(value.0))
+    }
+
+    /// The value of a residual that reads given traces only, which need not be waited for.
+    fn settle(&mut self, residual: ResidualId) -> Result<ValueId, Stop> {
+        let (mut time, mut value) = (self.time, residual);
+        let mut passed = Vec::new();
+        while !ValueId(value.0).is_constant() {
+            if let Some(known) = self.given.get(&(time, value)) {
+                value = *known;
+                break;
+            }
+            passed.push((time, value));
+            time += 1;
+            self.place_fixed(time)?;
+            self.progress.at_last_position(self.mode == Mode::Within(time));
+            let base = self.fixed_part();
+            value = self.progress.read(&mut self.residuals, &self.valuations, value, base)?;
+        }
+        if time != self.time {
+            self.place_fixed(self.time)?;
+            self.progress.at_last_position(self.mode == Mode::Within(self.time));
+        }
+        self.given.extend(passed.into_iter().map(|at| (at, value)));
+        Ok(ValueId(value.0))
+    }
+
+    /// The joint state that stands for one that was reached: the first with the same moves, since what is read of a state has
+    /// been read. Only where there are several blocks: sets within sets make it worth the while.
+    pub(crate) fn representative(&mut self, level: usize, joint: JointId) -> Result<JointId, Stop> {
+        let Level { joint: own, .. } = &mut self.levels[level];
+        let last = self.mode == Mode::Within(self.time);
+        if last || own.paths.iter().any(|&(path, _)| self.ends[path].is_some()) {
+            return Ok(joint);
+        }
+        own.representative(&mut self.graphs, joint)
     }
 
     /// Makes a move.
@@ -127,12 +173,13 @@ impl Search<'_> {
             }
             let moves = self.joint_moves(level, joint)?;
             self.count_moves(moves.len() * DEEPER)?;
-            for mv in moves.iter() {
-                match self.follow(level, *mv, inner, base)? {
+            for at in 0..moves.len() {
+                let mv = self.levels[level].joint.at(&moves, at);
+                match self.follow(level, mv, inner, base)? {
                     Some(v) if v == ValueId::of(decisive) => return Ok(v),
                     Some(v) if v == ValueId::of(!decisive) => {}
                     Some(ValueId::MISSING) => pairs.push((JointId::START, ValueId::MISSING)),
-                    Some(v) => pairs.push((mv.to, v)),
+                    Some(v) => pairs.push((self.representative(level, mv.to)?, v)),
                     None => {}
                 }
             }

@@ -95,13 +95,61 @@ fn verdicts(problem: &Problem, growth: &Growth) -> Option<Vec<bool>> {
 
 fn least(problem: &Problem, growth: &Growth, quantifiers: Quantifiers) -> Least {
     let config = Config { quantifiers, ..Config::new(Spec::Builtin) };
+    least_of(problem, growth, &config, u32::MAX)
+}
+
+/// The same with a search that is cancelled once so many problems have been asked for.
+fn least_of(problem: &Problem, growth: &Growth, config: &Config, cut: u32) -> Least {
+    let mut asked = 0;
     let name = lowered(&problem.to_string()).objectives[0].name.clone();
     let mut family = |value: i64| -> Result<typed::Problem, Infallible> {
         let value = u32::try_from(value).expect("a value of the range");
+        asked += 1;
+        if asked > cut {
+            config.deadline.cancel();
+        }
         Ok(lowered(&growth.at(problem, value).to_string()))
     };
-    let found = minimize(&name, 0..=i64::from(LAST), &mut family, &config);
+    let found = minimize(&name, 0..=i64::from(LAST), &mut family, config);
     found.unwrap_or_else(|error| panic!("{error}\n{problem}"))
+}
+
+/// Wherever a search is cut off, what it says is so, and it keeps nothing to itself that it has found.
+#[test]
+fn a_search_that_is_cut_off_says_what_is_known() {
+    let (mut open, mut above, mut nothing) = (0, 0, 0);
+    for seed in seeds(600) {
+        let mut random = Random::new(seed);
+        let problem = problem(&mut random);
+        if problem.exists.len() > 2 {
+            continue;
+        }
+        let growth = Growth::random(&problem, &mut random);
+        let Some(verdicts) = verdicts(&problem, &growth) else { continue };
+        for cut in 1..8 {
+            let config = Config::new(Spec::Builtin);
+            let Least { value, proved, undecided, outcome, .. } = least_of(&problem, &growth, &config, cut);
+            let about =
+                format!("seed {seed}, cut {cut}, {value} {proved} {undecided:?} {verdicts:?}\n{problem}");
+            let at = |value: i64| verdicts[usize::try_from(value).expect("a value of the range")];
+            assert!((0..proved).all(|below| !at(below)), "{about}");
+            let best = config.watch.standing().best;
+            match outcome.verdict {
+                Verdict::Realizable => {
+                    assert!(at(value) && best.is_none_or(|best| value <= best), "{about}");
+                    above += u32::from(undecided.is_some());
+                }
+                Verdict::Unrealizable => assert!(!at(value) && best.is_none(), "{about}"),
+                Verdict::Unknown => {
+                    assert!(undecided.is_some() && best.is_none(), "{best:?} was found: {about}");
+                    nothing += 1;
+                }
+            }
+            open += u32::from(undecided.is_some());
+        }
+    }
+    say(&format!("{open} searches did not end, {above} of them with a value, {nothing} with none"));
+    assert!(open < 100 || above > 5 && nothing > 50, "too uniform");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use crate::config::{Config, Outcome, Verdict};
 use crate::fact::{Error, Fault, Reason};
-use crate::solve::solve;
+use crate::solve::search_or_race;
 use hyperplan_problem::{Objective, Problem};
 use hyperplan_solver::{Deadline, Unknown};
 use std::time::Duration;
@@ -37,7 +37,7 @@ impl<'a> Asker<'a> {
         }
         let share = self.deadline.remaining().map_or(Duration::MAX, |left| left / SHARE);
         let config = Config { deadline: self.deadline.within(share), ..self.config.clone() };
-        match solve(self.problem, objective, &config) {
+        match search_or_race(self.problem, objective, &config) {
             Ok(Outcome { verdict: Verdict::Unknown, reason, .. }) => {
                 Ok(Err(reason.unwrap_or(Reason::Solver(Unknown::Unsaid))))
             }

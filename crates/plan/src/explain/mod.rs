@@ -8,12 +8,14 @@
 //! that leaves out what is not needed ends with parts that exclude each other and of which none can be left out.
 
 mod asker;
+mod closest;
 mod failure;
 mod longer;
 mod opponent;
 mod part;
 mod wall;
 
+pub use closest::{Closest, closest};
 pub use failure::{Difference, Failing, Failure, Judged};
 pub use longer::{Later, Longer, Time, longer};
 pub use opponent::{Choice, Opponents};

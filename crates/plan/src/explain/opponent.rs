@@ -11,7 +11,7 @@ use super::part::{at, is_at, now};
 use crate::config::Verdict;
 use crate::fact::Error;
 use crate::lint::demand::paths as read_paths;
-use hyperplan_problem::{Expr, FormulaId, Mode, Node, Objective, PathId, PathLeaf, State, Strategy};
+use hyperplan_problem::{Expr, FormulaId, Mode, Node, Objective, PathId, PathLeaf, Problem, State, Strategy};
 use hyperplan_space::{Graph, StateIx, value_in};
 
 /// Systems with more states are not looked at, and more starts or steps not asked about one by one.
@@ -77,7 +77,7 @@ pub(super) fn opponents(
     let steps = block.iter().copied().filter(|path| of_path(path, false) > 0).collect();
     let mut without = |kept: &[Choice]| {
         let left_out: Vec<Choice> = all.iter().filter(|choice| !kept.contains(choice)).cloned().collect();
-        let Ok(outcome) = asker.ask(&without(asker, objective, &left_out))? else { return Ok(None) };
+        let Ok(outcome) = asker.ask(&without(asker.problem, objective, &left_out))? else { return Ok(None) };
         // Without any start of some path there is nobody to win against.
         let begins =
             |path: &PathId| kept.iter().any(|choice| matches!(choice, Choice::Start(own, _) if own == path));
@@ -136,6 +136,21 @@ fn starts(asker: &Asker<'_>, objective: &Objective, path: PathId) -> Option<Vec<
         return None;
     }
     let graph = asker.config.graphs.explore(system, STATES)?;
+    let all = graph.initial.iter().map(|&state: &StateIx| Graph::state(&graph, system, state));
+    let states = mattering(asker.problem, objective, path, all, CHOICES + 1)?;
+    (states.len() <= CHOICES).then_some(states)
+}
+
+/// Of states in which a path of the other player may begin, the first so many that matter: no assumption fails there. `None`
+/// where the objective has too many parts to tell.
+pub(super) fn mattering(
+    problem: &Problem,
+    objective: &Objective,
+    path: PathId,
+    all: impl IntoIterator<Item = State>,
+    most: usize,
+) -> Option<Vec<State>> {
+    let system = &problem.systems[objective.paths[path].system];
     let (_, others) = others(objective);
     if others.len() > PARTS {
         return None;
@@ -147,13 +162,11 @@ fn starts(asker: &Asker<'_>, objective: &Objective, path: PathId) -> Option<Vec<
         };
         others.iter().any(|&part| now(&objective.formula, part, &mut leaf) != Some(true))
     };
-    let all = graph.initial.iter().map(|&state: &StateIx| Graph::state(&graph, system, state));
-    let states: Vec<State> = all.filter(matters).take(CHOICES + 1).collect();
-    (states.len() <= CHOICES).then_some(states)
+    Some(all.into_iter().filter(matters).take(most).collect())
 }
 
 /// The objective with some choices left out: paths that make one of them need not be won against.
-fn without(asker: &Asker<'_>, objective: &Objective, left_out: &[Choice]) -> Objective {
+pub(super) fn without(problem: &Problem, objective: &Objective, left_out: &[Choice]) -> Objective {
     let mut weaker = objective.clone();
     let span = objective.span;
     let (own, mut others) = others(objective);
@@ -161,7 +174,7 @@ fn without(asker: &Asker<'_>, objective: &Objective, left_out: &[Choice]) -> Obj
     let mut excused: Vec<FormulaId> = left_out
         .iter()
         .map(|choice| match choice {
-            Choice::Start(path, state) => at(formula, 0, is_at(asker.problem, objective, *path, state), span),
+            Choice::Start(path, state) => at(formula, 0, is_at(problem, objective, *path, state), span),
             Choice::Replaced(path, from, step) => {
                 let same = Expr::Leaf(PathLeaf::SameAction(*from, *path));
                 at(formula, step + 1, Expr::Not(Box::new(same)), span)

@@ -9,6 +9,7 @@ use crate::evidence::{Evidence, full};
 use crate::fact::{Error, Note, Reason, Wrong};
 use crate::watch::Stage;
 use hyperplan_encode::Encoder;
+use hyperplan_problem::Strategy;
 use hyperplan_smt::{Features, Model, Script, Term, check_model};
 use hyperplan_solver::{self as solver, Answer, Identity, Options, QuerySize, Session, Spec, Unknown, open};
 use std::time::Instant;
@@ -77,6 +78,11 @@ impl<'c> Oracle<'c> {
     /// With somebody who hears what is said.
     pub(crate) fn heard_by(self, listener: &'c mut dyn Listener) -> Self {
         Oracle { listener: Some(listener), ..self }
+    }
+
+    /// Tells who watches of a candidate.
+    pub(crate) fn met(&self, candidate: Strategy) {
+        self.config.watch.candidate(candidate);
     }
 
     /// Ends all that was asked.

@@ -70,6 +70,53 @@ pub struct Answer {
     /// The case that the verdict is about, where it is not about the whole objective.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub case: Option<Case>,
+    /// Where it is not known whether there is a plan, one that fails against few choices of the other player only, if the search
+    /// met such a one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub closest: Option<Closest>,
+}
+
+/// A plan that fails against some choices of the other player, by the checker: it wins against all paths that make none of them,
+/// and of each some path that makes it, and no other of them, defeats the plan.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
+pub struct Closest {
+    /// The paths of the leading block.
+    pub witness: Vec<WitnessPath>,
+    /// The choices.
+    pub spared: Choices,
+}
+
+/// Choices of the other player.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
+pub struct Choices {
+    /// States in which a path begins.
+    pub starts: Vec<Start>,
+    /// Steps in which a path does something else than another.
+    pub replaced: Vec<Replaced>,
+}
+
+/// A state in which a path may begin.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
+pub struct Start {
+    /// The path.
+    pub path: String,
+    /// The value of each variable.
+    pub state: Ordered<Scalar>,
+}
+
+/// A step in which a path does something else than another.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
+pub struct Replaced {
+    /// The path.
+    pub path: String,
+    /// The other path.
+    pub from: String,
+    /// The time of the step, from 0.
+    pub time: usize,
 }
 
 /// What was found where several strategies, or counterexamples, were asked for, the witness of the answer being the first.

@@ -2,6 +2,7 @@
 
 mod alternation;
 mod build;
+mod lasting;
 mod naive;
 mod operators;
 mod parts;

@@ -5,7 +5,7 @@ mod record;
 mod ways;
 mod words;
 
-pub(crate) use words::in_short;
+pub(crate) use words::{closest, in_short};
 
 use crate::args::{self, Format};
 use crate::config;

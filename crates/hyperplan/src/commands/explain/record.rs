@@ -7,7 +7,7 @@ use hyperplan_plan::Verdict;
 use hyperplan_plan::explain::{
     Candidate, Choice, Core, Failure, Judged, Later, Opponents, Scope, Time, Wall,
 };
-use hyperplan_problem::answer::{Ordered, ReasonCode, Scalar, WitnessPath, to_witness, write_state};
+use hyperplan_problem::answer::{Choices, Ordered, ReasonCode, Scalar, WitnessPath, to_witness, write_state};
 use hyperplan_problem::{ActionId, FormulaId, Objective, PathId, State, Strategy};
 use hyperplan_syntax::{Diagnostic, JsonDiagnostic, JsonSpan, to_json};
 use serde::Serialize;
@@ -82,7 +82,7 @@ struct JsonLater {
 struct JsonCandidate {
     witness: Vec<WitnessPath>,
     /// It wins unless the other player makes one of these.
-    spared: Option<JsonChoices>,
+    spared: Option<Choices>,
     failure: JsonFailure,
 }
 
@@ -123,27 +123,7 @@ struct JsonOpponents {
     /// So many choices there were.
     of: usize,
     #[serde(flatten)]
-    choices: JsonChoices,
-}
-
-/// What the other player may choose.
-#[derive(Serialize)]
-struct JsonChoices {
-    starts: Vec<JsonStart>,
-    replaced: Vec<JsonStep>,
-}
-
-#[derive(Serialize)]
-struct JsonStart {
-    path: String,
-    state: Ordered<Scalar>,
-}
-
-#[derive(Serialize)]
-struct JsonStep {
-    path: String,
-    from: String,
-    time: usize,
+    choices: Choices,
 }
 
 impl Record {
@@ -299,19 +279,7 @@ impl Own<'_> {
         JsonOpponents { minimal: opponents.minimal, of: opponents.of, choices }
     }
 
-    fn choices(&self, choices: &[Choice]) -> JsonChoices {
-        let (mut starts, mut replaced) = (Vec::new(), Vec::new());
-        for choice in choices {
-            match choice {
-                Choice::Start(path, state) => {
-                    starts.push(JsonStart { path: self.name(*path), state: self.state(*path, state) });
-                }
-                Choice::Replaced(path, from, time) => {
-                    let (path, from) = (self.name(*path), self.name(*from));
-                    replaced.push(JsonStep { path, from, time: *time });
-                }
-            }
-        }
-        JsonChoices { starts, replaced }
+    fn choices(&self, choices: &[Choice]) -> Choices {
+        hyperplan::search::choices(&self.loaded.problem, self.objective, choices)
     }
 }

@@ -6,10 +6,10 @@ use crate::report::{WIDTH, is_drawable, paths_text};
 use hyperplan_outlet::one_line;
 use hyperplan_plan::Verdict;
 use hyperplan_plan::explain::{
-    Candidate, Choice, Core, Difference, Explanation, Failing, Failure, Judged, Later, Opponents, Scope,
-    Time, Wall,
+    Candidate, Choice, Closest, Core, Difference, Explanation, Failing, Failure, Judged, Later, Opponents,
+    Scope, Time, Wall,
 };
-use hyperplan_problem::{ActionId, FormulaId, Objective, PathId, State, Trace, display};
+use hyperplan_problem::{ActionId, FormulaId, Objective, PathId, Problem, State, Trace, display};
 use hyperplan_render::{Board, Scene};
 use hyperplan_syntax::{Diagnostic, render};
 use hyperplan_verify::Defeat;
@@ -220,17 +220,8 @@ impl Words<'_> {
         text
     }
 
-    /// Paths of the other player that make a choice.
     fn choice(&self, choice: &Choice) -> String {
-        match choice {
-            Choice::Start(path, state) => {
-                format!("{} that begins in {}", self.name(*path), self.state(*path, state))
-            }
-            Choice::Replaced(path, from, time) => {
-                let (path, from) = (self.name(*path), self.name(*from));
-                format!("{path} that does something else than {from} at time {time}")
-            }
-        }
+        choice_text(&self.told.loaded.problem, self.told.objective, choice)
     }
 
     fn opponents(&self, found: &Opponents) -> String {
@@ -339,6 +330,28 @@ impl Words<'_> {
         }
         text
     }
+}
+
+/// Paths of the other player that make a choice.
+fn choice_text(problem: &Problem, objective: &Objective, choice: &Choice) -> String {
+    let name = |path: PathId| one_line(&objective.paths[path].name);
+    match choice {
+        Choice::Start(path, state) => {
+            let system = &problem.systems[objective.paths[*path].system];
+            format!("{} that begins in {}", name(*path), one_line(&display::state(system, state)))
+        }
+        Choice::Replaced(path, from, time) => {
+            format!("{} that does something else than {} at time {time}", name(*path), name(*from))
+        }
+    }
+}
+
+/// The line above a candidate that `solve` prints where nothing was decided.
+pub(crate) fn closest(problem: &Problem, objective: &Objective, closest: &Closest) -> String {
+    let names = closest.strategy.traces.iter().map(|trace| one_line(&objective.paths[trace.path].name));
+    let choices = closest.spared.iter().map(|choice| choice_text(problem, objective, choice));
+    let (names, choices) = (names.collect::<Vec<_>>().join(", "), choices.collect::<Vec<_>>().join(", "));
+    format!("a candidate for {names}: it wins against any but {choices}")
 }
 
 /// What more time would do.

@@ -2,6 +2,7 @@
 
 use super::plan_format;
 use crate::args::SolveFormat;
+use crate::commands::explain::closest;
 use crate::failure::Result;
 use crate::files::write_bytes;
 use crate::load::Loaded;
@@ -152,7 +153,7 @@ impl<'a> Found<'a> {
     fn verdict(&self) -> String {
         if let Some(searched) = self.searched {
             let words = format!("{}: {}", self.objective.name, one_line(&searched.words));
-            let known = searched.minimized.below != Below::Unknown;
+            let known = searched.minimized.below != Below::Unknown && self.answer.verdict != Verdict::Unknown;
             return match (self.answer.costs.is_empty(), self.reason().filter(|_| known)) {
                 (true, None) => words,
                 (true, Some(why)) => format!("{words}; what is preferred is unknown: {why}"),
@@ -195,6 +196,7 @@ impl<'a> Found<'a> {
         let mut text = self.verdict_line();
         text.push_str(&format!("\nhorizon: {}\n", self.horizons()));
         text.push_str(&self.witnesses(color));
+        text.push_str(&self.closest(color));
         text.extend(self.reason.iter().map(|why| format!("{}\n", one_line(why))));
         text.push_str(&self.checked());
         match self.answer.certificates.as_slice() {
@@ -233,6 +235,13 @@ impl<'a> Found<'a> {
             text += &format!("{}\n", paths_text(self.scene(strategy), color));
         }
         text
+    }
+
+    /// A candidate that comes close, where nothing was decided.
+    fn closest(&self, color: bool) -> String {
+        let Some(found) = &self.outcome.closest else { return String::new() };
+        let line = closest(&self.loaded.problem, self.objective, found);
+        format!("{line}\n{}\n", paths_text(self.scene(&found.strategy), color))
     }
 
     fn checked(&self) -> String {

@@ -50,6 +50,7 @@ pub(super) fn outcome(problem: &Problem, objective: &Objective, answer: &Answer)
             .collect(),
         witness: strategy,
         verified: answer.verified,
+        closest: None,
         solver: Identity { name: answer.solver.name.clone(), version: answer.solver.version.clone() },
         quantifiers: answer.quantifiers,
         because: None,
