@@ -28,7 +28,7 @@ fn the_table_is_good() {
     let smt = ["z3", "cvc5", "yices", "bitwuzla"];
     let qbf = ["depqbf", "caqe", "qute", "rareqs"];
     let sat = ["kissat", "cryptominisat", "minisat", "picosat", "clasp", "glucose"];
-    assert_eq!(names, [smt, qbf, sat].concat());
+    assert_eq!(names, [&smt[..], &qbf, &sat].concat());
     // Those that get files of bits answer once, and are told which file.
     for profile in catalog.profiles().iter().filter(|profile| profile.format.is_some()) {
         let file = |arguments: &Vec<String>| arguments.iter().any(|argument| argument == FILE);
