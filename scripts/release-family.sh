@@ -5,7 +5,7 @@
 #   scripts/release-family.sh DIR [small|full|OPTIONS OF EMIT --family]
 #
 # HYPERPLAN is the command, if it is not in the PATH. `small` takes a minute, and its benchmarks are easy; `full`, the
-# default, takes an hour and a half on one core; options, --select N among them, say what else is wanted. What is
+# default, takes an hour on one core; options, --select N among them, say what else is wanted. What is
 # interrupted goes on with the same command. DIR/submission is what is submitted, DIR/record what is kept of how it was
 # made. dolmen, z3, cvc5 and pySMT check the files if they are there.
 set -eu
