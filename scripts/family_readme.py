@@ -117,10 +117,20 @@ def order(name: str, easy: float, limit: float) -> float:
     return limit if name.startswith("over") else max(float(name.split()[0]), easy)
 
 
+def is_hard(entry: dict, seconds: float) -> bool:
+    """Whether a solver that takes it is at it for longer; one that gives up at once is not."""
+    return any(run["outcome"] in ("solved", "unsolved") and run["seconds"] > seconds for run in entry["runs"].values())
+
+
+def is_easy(entry: dict) -> bool:
+    """Whether all solvers that take it do it at once."""
+    return entry["bin"].startswith("under")
+
+
 def shares(benchmarks: list[dict], easy: float, limit: float) -> list[str]:
     """What competitions ask: how many are hard for somebody, and easy for all."""
-    hard = sum(1 for entry in benchmarks if entry["slowest"] is None or entry["slowest"] > min(limit, 20.0))
-    simple = sum(1 for entry in benchmarks if entry["bin"].startswith("under"))
+    hard = sum(1 for entry in benchmarks if is_hard(entry, min(limit, 20.0)))
+    simple = sum(1 for entry in benchmarks if is_easy(entry))
     lines = [f"{hard} of {len(benchmarks)} take one of the solvers over {number(min(limit, 20.0))} s; {simple} are done by all "
              f"within {number(easy)} s."]
     both = collections.defaultdict(set)

@@ -11,6 +11,7 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 use sha2::{Digest as _, Sha256};
 
+use crate::packed::{ending, unpacked};
 use crate::record::{Answer, Limit, Record, RunStatus};
 
 /// Why a file has no results.
@@ -46,16 +47,18 @@ pub enum ForeignError {
     /// It is not in UTF-8.
     #[error("it is not in UTF-8")]
     Encoding,
+    /// It ends in `.gz`, and is damaged, or stands for too much.
+    #[error("it cannot be unpacked: {0}")]
+    Packed(#[from] std::io::Error),
     /// There is nothing in it.
     #[error("it has no runs")]
     Empty,
 }
 
-/// Whether a file is one of these by its name; else it is a log.
+/// Whether a file is one of these by its name; else it is a log. Each may be compressed, and end in `.gz` too.
 #[must_use]
 pub fn is_foreign(path: &Path) -> bool {
-    let ending = path.extension().and_then(|ending| ending.to_str());
-    ending.is_some_and(|ending| ["xml", "json", "csv"].contains(&ending.to_ascii_lowercase().as_str()))
+    ["xml", "json", "csv"].contains(&ending(path).as_str())
 }
 
 /// The runs of such a file.
@@ -63,9 +66,9 @@ pub fn is_foreign(path: &Path) -> bool {
 /// # Errors
 /// If it is none, with the line.
 pub fn read(path: &Path, bytes: &[u8]) -> Result<Vec<Record>, ForeignError> {
-    let text = std::str::from_utf8(bytes).map_err(|_| ForeignError::Encoding)?;
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
-    let mut records = match ending.as_str() {
+    let bytes = unpacked(path, bytes)?;
+    let text = std::str::from_utf8(&bytes).map_err(|_| ForeignError::Encoding)?;
+    let mut records = match ending(path).as_str() {
         "xml" => benchexec(text)?,
         "json" => smt_comp(text)?,
         _ => starexec(text)?,
@@ -309,6 +312,8 @@ fn starexec(text: &str) -> Result<Vec<Record>, ForeignError> {
         let pair: Pair = pair?;
         let status = match (pair.result.as_str(), pair.status.as_str()) {
             (_, status) if status.starts_with("timeout") => RunStatus::Timeout,
+            // So says the table of the parallel and the cloud track.
+            ("timeout", _) => RunStatus::Timeout,
             (_, status) if status.starts_with("memout") => RunStatus::Memout,
             ("sat", _) => RunStatus::Sat,
             ("unsat", _) => RunStatus::Unsat,

@@ -24,6 +24,7 @@ pub mod list;
 mod log;
 mod machine;
 pub mod merge;
+mod packed;
 mod paths;
 pub mod plan;
 pub mod plot;

@@ -5,10 +5,11 @@
 //! its run is done again like one that never was. One comparison at a time has the log to itself.
 
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{self, Read as _, Seek as _, SeekFrom, Write as _};
+use std::io::{self, BufWriter, Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use crate::packed::unpacked;
 use crate::record::Record;
 
 /// Why a log cannot be used.
@@ -89,14 +90,15 @@ impl Log {
         Ok((Log { file, path: path.to_owned() }, past))
     }
 
-    /// Reads what is in a log, which somebody may be writing: nothing is locked, and nothing changed.
+    /// Reads what is in a log, which may be compressed (`.gz`), and which somebody may be writing: nothing is locked, and
+    /// nothing changed.
     ///
     /// # Errors
     /// When it cannot be read.
     pub fn look(path: &Path) -> Result<Past, LogError> {
-        let bytes = std::fs::read(path);
         let failed = |source| LogError::Io { what: "read", path: path.to_owned(), source };
-        Ok(read(path, &bytes.map_err(failed)?).0)
+        let bytes = std::fs::read(path).map_err(failed)?;
+        Ok(read(path, &unpacked(path, &bytes).map_err(failed)?).0)
     }
 
     /// Writes a run.
@@ -104,10 +106,23 @@ impl Log {
     /// # Errors
     /// When it cannot be written.
     pub fn append(&mut self, record: &Record) -> Result<(), LogError> {
+        self.extend(std::slice::from_ref(record))
+    }
+
+    /// Writes many runs, which takes hardly longer than one.
+    ///
+    /// # Errors
+    /// When they cannot be written.
+    pub fn extend(&mut self, records: &[Record]) -> Result<(), LogError> {
         let failed = |source| LogError::Io { what: "write", path: self.path.clone(), source };
-        let mut line = serde_json::to_vec(record).map_err(|error| failed(error.into()))?;
-        line.push(b'\n');
-        self.file.write_all(&line).map_err(failed)?;
+        let mut to = BufWriter::new(&self.file);
+        for record in records {
+            let mut line = serde_json::to_vec(record).map_err(|error| failed(error.into()))?;
+            line.push(b'\n');
+            to.write_all(&line).map_err(failed)?;
+        }
+        to.flush().map_err(failed)?;
+        drop(to);
         // Against a loss of power. Not every file system can, and a killed process loses nothing anyway.
         let _ = self.file.sync_data();
         Ok(())
@@ -155,6 +170,24 @@ mod tests {
         drop(log);
         let (_, past) = open(&path);
         assert_eq!(past.records, [record("a"), record("b")]);
+    }
+
+    #[test]
+    fn a_log_may_be_compressed() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("runs.jsonl");
+        let (mut log, _) = open(&path);
+        log.extend(&[record("a"), record("b")]).expect("it can be written");
+        let packed = folder.path().join("runs.jsonl.gz");
+        let mut to = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        to.write_all(&std::fs::read(&path).expect("it was written")).expect("it is memory");
+        let bytes = to.finish().expect("it is memory");
+        std::fs::write(&packed, &bytes).expect("the folder is ours");
+        let past = Log::look(&packed).expect("it can be read");
+        assert_eq!((past.records, past.notes.len()), (vec![record("a"), record("b")], 0));
+        // What is cut off is no log any more, since nothing says how much is missing.
+        std::fs::write(&packed, &bytes[..bytes.len() - 9]).expect("the folder is ours");
+        assert!(Log::look(&packed).is_err());
     }
 
     #[test]

@@ -10,6 +10,8 @@ use crate::supervise::{Exceeded, Measured};
 
 /// The longest message that is remembered.
 const MESSAGE: usize = 500;
+/// Words, in small letters, by which solvers say that they do not take such a query; the last two are those of yices.
+const REFUSALS: [&str; 4] = ["unsupported", "not supported", "unknown logic", "not an exists/forall problem"];
 
 /// What a run came to.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -129,7 +131,7 @@ pub(crate) fn of_query(measured: &Measured, query: &Query, heard: &Heard, over: 
             () if ["out of memory", "bad_alloc", "memory exhausted"].iter().any(|w| all.contains(w)) => {
                 RunStatus::Memout
             }
-            () if ["unsupported", "not supported"].iter().any(|w| all.contains(w)) => RunStatus::Unsupported,
+            () if REFUSALS.iter().any(|words| all.contains(words)) => RunStatus::Unsupported,
             () => RunStatus::Error,
         };
         return trouble(status, early.clone());

@@ -4,7 +4,7 @@ use crate::failure::{Exit, Failure};
 use crate::files::reason;
 use hyperplan_plan::{EncodeError, Error, Evidence, Fallen, Fault, Note, Reason, Unsupported, Wrong};
 use hyperplan_problem::answer::ReasonCode;
-use hyperplan_solver::{Error as SolverError, Unknown, keep_query};
+use hyperplan_solver::{Error as SolverError, Format, Unknown, keep_query};
 use hyperplan_syntax::Diagnostic;
 use std::fmt::Display;
 use std::io;
@@ -129,6 +129,10 @@ fn unsupported(what: &Unsupported) -> String {
              cegis"
         ),
         Unsupported::NoBits { .. } | Unsupported::NoTracks(_) => format!("{what}; use --format smt2"),
+        Unsupported::NotRead { reads, .. } => {
+            let format = reads.map_or("smt2", Format::name);
+            format!("{what}; use --format {format}, or leave out --solver")
+        }
         Unsupported::NothingToWrite => format!("{what}; use --quantifiers keep, expand or cegis"),
         Unsupported::Dialogue => format!("{what}; use --quantifiers keep or expand, or --track incremental"),
         Unsupported::OneCheck => format!("{what}; use --quantifiers keep or expand"),

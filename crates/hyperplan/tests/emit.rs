@@ -146,11 +146,10 @@ fn files_of_bits_say_what_they_are() {
     assert!(clauses.contains("\np cnf ") && !clauses.contains("\ne "), "{clauses}");
     let quantified = of(&["--format", "qdimacs"]);
     assert!(quantified.contains("\np cnf ") && quantified.contains("\ne "), "{quantified}");
-    // What the solver reads, unless something else is asked for.
+    // What the solver reads, if nothing is asked for.
     assert_eq!(of(&["--solver", "depqbf", "--status", "sat"]), {
         of(&["--format", "qdimacs", "--status", "sat"]).replace("Target solver: any", "Target solver: depqbf")
     });
-    assert!(of(&["--solver", "depqbf", "--format", "smt2"]).starts_with("(set-info "));
     let gates = of(&["--format", "qcir", "--no-comments"]);
     assert!(gates.starts_with("#QCIR-G14 ") && gates.contains("\nexists("), "{gates}");
     assert!(!gates.contains("p.at"), "{gates}");
@@ -162,6 +161,77 @@ fn files_of_bits_say_what_they_are() {
         let run = hyperplan(&[&["emit", "rooms.hp", "--objective", "sp"], options].concat());
         assert_eq!(run.status, 2, "{}", run.stdout);
         assert!(run.stderr.contains(message), "{}", run.stderr);
+    }
+}
+
+/// Of every solver that can be named, in every format.
+#[test]
+fn what_a_solver_does_not_read_is_not_written_for_it() {
+    let table = include_str!("../../solver/src/external/solvers.toml");
+    let value = |entry: &str, key: &str| {
+        let line = entry.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(" = "))?;
+        Some(line.trim_matches('"').to_owned())
+    };
+    let solvers = table.split("[[solver]]").skip(1);
+    let mut solvers: Vec<(String, String)> = solvers
+        .map(|entry| {
+            let reads = value(entry, "format").unwrap_or_else(|| "smt2".to_owned());
+            (value(entry, "name").expect("all have names"), reads)
+        })
+        .collect();
+    solvers.push(("builtin".to_owned(), "smt2".to_owned()));
+    assert!(solvers.len() > 10);
+    let begins = [("smt2", "(set-info "), ("qcir", "#QCIR-G14 "), ("qdimacs", "c "), ("dimacs", "c ")];
+    for (solver, reads) in &solvers {
+        for (format, begin) in begins {
+            let run = hyperplan(&[
+                "emit",
+                "rooms.hp",
+                "--objective",
+                "sp",
+                "--status",
+                "sat",
+                "--solver",
+                solver,
+                "--format",
+                format,
+            ]);
+            if format == reads {
+                assert!(
+                    run.status == 0 && run.stdout.starts_with(begin),
+                    "{solver} {format}: {}",
+                    run.stderr
+                );
+                continue;
+            }
+            let hint = format!("use --format {reads}, or leave out --solver");
+            assert!(run.status == 2 && run.stdout.is_empty(), "{solver} {format}: {}", run.stdout);
+            assert!(run.stderr.contains(solver) && run.stderr.contains(&hint), "{format}: {}", run.stderr);
+        }
+        let folder = tempfile::tempdir().expect("a folder");
+        let family = folder.path().join("family");
+        let run = hyperplan(&[
+            "emit",
+            "--family",
+            text(&family),
+            "--sizes",
+            "3",
+            "--densities",
+            "0",
+            "--seeds",
+            "0",
+            "--objectives",
+            "cso",
+            "--horizons",
+            "least",
+            "--states",
+            "bitvec",
+            "--solver",
+            solver,
+        ]);
+        let refused = run.status == 2 && run.stderr.contains("a family is in SMT-LIB 2") && !family.exists();
+        assert_eq!(refused, reads != "smt2", "{solver}: {} {}", run.status, run.stderr);
+        assert!(refused || run.status == 0, "{solver}: {}", run.stderr);
     }
 }
 

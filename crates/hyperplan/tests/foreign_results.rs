@@ -61,3 +61,35 @@ fn results_of_others_stand_beside_ours() {
     assert!(run.stderr.contains("line 5: the run has no walltime"), "{}", run.stderr);
     assert_eq!(fs::read(out.join("runs.jsonl")).expect("there is a log"), log);
 }
+
+/// Two runs of one shape, by two solvers, with more CPU time than wall time, in a table that says no limit.
+#[test]
+fn a_limit_that_is_not_said_can_be_given() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (csv, out) = (folder.path().join("job.csv"), folder.path().join("out"));
+    let rows = "benchmark,solver,status,cpu time,wallclock time,result,expected\n\
+        UF/a/b.smt2,wide,complete,30,10,sat,sat\nUF/a/b.smt2,narrow,complete,15,15,sat,sat\n";
+    fs::write(&csv, rows).expect("the folder is ours");
+    let divisions = |options: &[&str]| {
+        let merge = ["compare", "--out", text(&out), "--merge", text(&csv)];
+        let run = hyperplan(&[&merge[..], options].concat());
+        assert_eq!(run.status, 0, "{}", run.stderr);
+        let divisions = fs::read_to_string(out.join("divisions.md")).expect("it was written");
+        fs::remove_dir_all(&out).expect("the folder is ours");
+        divisions
+    };
+    let plain = divisions(&[]);
+    assert!(
+        plain.contains("| wide | 1 (1) | 1 (2) |") && plain.contains("| narrow | 1 (2) | 1 (1) |"),
+        "{plain}"
+    );
+    // By parallel score wide is first; by the sequential one its answer came too late.
+    let limited = divisions(&["--limit", "20"]);
+    assert!(limited.contains("| wide | 1 (1) | 0 (2) |"), "{limited}");
+    assert!(limited.contains("| narrow | 1 (2) | 1 (1) |"), "{limited}");
+    for wrong in ["0", "-1", "nan", "inf", "soon"] {
+        let limit = format!("--limit={wrong}");
+        let run = hyperplan(&["compare", "--out", text(&out), "--merge", text(&csv), &limit]);
+        assert_eq!(run.status, 2, "{wrong}");
+    }
+}

@@ -106,6 +106,39 @@ fn solvers_are_measured_and_what_they_got_wrong_is_in_the_header() {
 }
 
 #[test]
+fn only_solvers_that_are_asked_now_count() {
+    let (folder, programs) = (tempfile::tempdir().expect("a folder"), tempfile::tempdir().expect("a folder"));
+    let quick = solver(programs.path(), "quick", "echo unknown");
+    let slow = solver(programs.path(), "slow", "sleep 0.1; echo unknown");
+    let select = |by: &str| {
+        let options = ["--select", "4", "--measure-by", by, "--measure-limit", "5"];
+        let run = family(folder.path(), &options);
+        assert_eq!(run.status, 0, "{}", run.stderr);
+        json(&folder.path().join("selected/manifest.json"))
+    };
+    let names = |manifest: &serde_json::Value| -> Vec<String> {
+        manifest["solvers"].as_object().expect("a table").keys().cloned().collect()
+    };
+    let both = select(&format!("{quick},{slow}"));
+    assert_eq!(names(&both), [quick.clone(), slow]);
+    let one = select(&quick);
+    assert_eq!(names(&one), std::slice::from_ref(&quick));
+    for entry in one["benchmarks"].as_array().expect("a list") {
+        assert_eq!(
+            entry["runs"].as_object().expect("a table").keys().collect::<Vec<_>>(),
+            [&quick],
+            "{entry}"
+        );
+    }
+    // A log that is named counts as it is.
+    let log = folder.path().join("measured/runs.jsonl");
+    let run =
+        hyperplan(&["emit", "--family", text(folder.path()), "--select", "4", "--measured", text(&log)]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    assert_eq!(names(&json(&folder.path().join("selected/manifest.json"))), names(&both));
+}
+
+#[test]
 fn what_makes_no_selection_is_refused_and_loses_nothing() {
     let (folder, programs) = (tempfile::tempdir().expect("a folder"), tempfile::tempdir().expect("a folder"));
     let lost = solver(programs.path(), "lost", "echo unknown");

@@ -141,6 +141,16 @@ pub enum Unsupported {
     /// Models and cores are asked for in SMT-LIB, and dialogues held.
     #[error("{0} has no commands: it asks for no model and no core, and holds no dialogue")]
     NoTracks(Format),
+    /// The solver that a file is for reads another format.
+    #[error("solver {solver} is given {}, and does not read {}", format_name(*.reads), format_name(*.written))]
+    NotRead {
+        /// The solver.
+        solver: String,
+        /// What it reads; `None` for SMT-LIB 2.
+        reads: Option<Format>,
+        /// What the file was to be written in.
+        written: Option<Format>,
+    },
     /// A search did not get far enough to make a dialogue.
     #[error("the search did not get to ask twice: give it more time")]
     ShortDialogue,
@@ -169,6 +179,10 @@ fn unbounded(system: Option<&str>, states: States) -> String {
         Some(system) => format!("system {system} has variables without bounds"),
         None => format!("states are written as {states}"),
     }
+}
+
+fn format_name(format: Option<Format>) -> String {
+    format.map_or_else(|| "SMT-LIB 2".to_owned(), |format| format.to_string())
 }
 
 fn subject(system: Option<&str>, states: States) -> String {

@@ -53,11 +53,11 @@ fn external_solvers_agree_with_brute_force() {
 
 #[test]
 fn solvers_of_bits_agree_with_brute_force() {
-    for name in installed(&["depqbf", "cryptominisat", "minisat", "picosat"]) {
+    for name in installed(&["depqbf", "cryptominisat", "minisat", "picosat", "clasp"]) {
         agrees(&Spec::Profile(name), 0..20);
     }
     // These come with no system.
-    let optional = ["caqe", "qute", "rareqs", "kissat"];
+    let optional = ["caqe", "qute", "rareqs", "kissat", "glucose"];
     for solver in discover().into_iter().filter(|solver| optional.contains(&solver.name.as_str())) {
         if solver.path.is_some() {
             agrees(&Spec::Profile(solver.name), 0..20);

@@ -1,5 +1,7 @@
 use super::*;
 
+use std::io::Write as _;
+
 const XML: &str = r#"<?xml version="1.0"?>
 <!DOCTYPE result PUBLIC '+//IDN sosy-lab.org//DTD BenchExec result 3.0//EN' 'https://www.sosy-lab.org/benchexec/result-3.0.dtd'>
 <result benchmarkname="bench" name="bench.z3" tool="z3" version="4.8" options="-smt2" timelimit="60s" walltimelimit="70s" memlimit="16000000000B">
@@ -95,10 +97,18 @@ fn tables_of_starexec_are_read() {
     let text = "pair id,benchmark,solver,configuration,status,cpu time,wallclock time,memory usage,result,expected\n\
         1,QF_UF/a/b.smt2,yices,default,complete,1.0,1.5,2048,sat,sat\n\
         2,QF_UF/a/c.smt2,yices,default,timeout (wallclock),20,20,0,starexec-unknown,-\n\
-        3,QF_UF/a/d.smt2,yices,default,complete,1,1,0,starexec-unknown,unsat\n";
-    let runs = read(Path::new("job.csv"), text.as_bytes()).expect("three runs");
+        3,QF_UF/a/d.smt2,yices,default,complete,1,1,0,starexec-unknown,unsat\n\
+        4,QF_UF/a/e.smt2,yices,default,complete,20,20,0,timeout,unknown\n";
+    let runs = read(Path::new("job.csv"), text.as_bytes()).expect("four runs");
     let statuses: Vec<RunStatus> = runs.iter().map(|run| run.status).collect();
-    assert_eq!(statuses, [RunStatus::Sat, RunStatus::Timeout, RunStatus::Unknown]);
+    assert_eq!(statuses, [RunStatus::Sat, RunStatus::Timeout, RunStatus::Unknown, RunStatus::Timeout]);
+    let mut to = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    to.write_all(text.as_bytes()).expect("it is memory");
+    let packed = to.finish().expect("it is memory");
+    assert!(is_foreign(Path::new("a/job.CSV.gz")) && !is_foreign(Path::new("runs.jsonl.gz")));
+    assert_eq!(read(Path::new("job.csv.gz"), &packed).expect("four runs"), runs);
+    let cut = read(Path::new("job.csv.gz"), &packed[..packed.len() - 9]);
+    assert!(matches!(cut, Err(ForeignError::Packed(_))), "{cut:?}");
     assert_eq!(
         (runs[0].memory_mib, runs[2].expected, runs[0].logic.as_deref()),
         (2.0, Some(Answer::Unsat), Some("QF_UF"))

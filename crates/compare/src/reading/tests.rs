@@ -135,6 +135,9 @@ fn failures_on_queries() {
         (RunStatus::Error, "(error \"line 1: no\")".to_owned())
     );
     assert_eq!(of(1, "(error \"logic not supported\")\n", "").0, RunStatus::Unsupported);
+    for refusal in ["unknown logic: QF_DT", "invalid quantifier nesting (not an exists/forall problem)"] {
+        assert_eq!(of(0, &format!("(error \"{refusal}\")\n"), "").0, RunStatus::Unsupported);
+    }
     assert_eq!(of(1, "", "terminate called: std::bad_alloc\n").0, RunStatus::Memout);
     assert_eq!(of(0, "satisfiable", ""), (RunStatus::Error, "no answer, exit status 0".to_owned()));
     assert_eq!(of(0, "", "").0, RunStatus::Error);

@@ -106,6 +106,7 @@ impl Compare {
                 shard: None,
                 log: None,
                 merge: Vec::new(),
+                limit: None,
                 echo: false,
                 engine: None,
                 tasks: None,
@@ -167,9 +168,13 @@ pub(crate) struct Cluster {
     #[arg(long, hide = true, requires = "shard")]
     pub(crate) log: Option<String>,
     /// Runs nothing, but puts other logs into that of --out and reports; of a plan, with what is missing. Also results of
-    /// BenchExec (.xml), of SMT-COMP (.json) and of StarExec (.csv)
+    /// BenchExec (.xml), of SMT-COMP (.json) and of StarExec (.csv), all of which may be compressed (.gz)
     #[arg(long, value_name = "LOG", num_args = 1.., conflicts_with = "files")]
     pub(crate) merge: Vec<PathBuf>,
+    /// The limit of results of others that do not say it, as those of SMT-COMP and StarExec; without it the sequential
+    /// score counts whatever CPU time an answer took
+    #[arg(long, value_name = "SECONDS", requires = "merge", value_parser = seconds)]
+    pub(crate) limit: Option<f64>,
     /// Prints each run on standard output too, as its line in the log: where nothing else comes back from a machine
     #[arg(long, requires = "shard")]
     pub(crate) echo: bool,
@@ -211,6 +216,12 @@ what is missing there: after an interruption, or where a file, a solver, an opti
 
 Exit status: 0 nothing is wrong with any answer; 3 with --merge: runs of the plan are missing; 4 a solver gave a wrong answer \
 or model, or is not there; 5 hyperplan may be wrong; 2 bad usage or input; 130 interrupted.";
+
+/// A time to work in.
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.trim().parse::<f64>().ok().filter(|seconds| seconds.is_finite() && *seconds > 0.0);
+    seconds.ok_or_else(|| "expected seconds, more than 0".to_owned())
+}
 
 /// A constant and its values.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -120,6 +120,15 @@ pub(super) fn common(args: &args::Emit, date: &str, out: &Output) -> Result<Emit
         solver,
         ..EmitConfig::new(date)
     };
+    match config.demand_format() {
+        Ok(()) => {}
+        Err(error) if args.family.folder.is_some() => {
+            return Err(Failure::input(format_args!(
+                "a family is in SMT-LIB 2, but {error}: leave out --solver"
+            )));
+        }
+        Err(error) => return Err(Explain::default().failure("--solver", &error.into())),
+    }
     Ok(match &args.author {
         Some(author) => EmitConfig { author: config::author(author)?, ..config },
         None => config,

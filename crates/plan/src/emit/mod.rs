@@ -85,6 +85,21 @@ impl EmitConfig {
             deadline: Deadline::never(),
         }
     }
+
+    /// Refuses a solver that is given another format.
+    ///
+    /// # Errors
+    /// [`Unsupported::NotRead`].
+    pub fn demand_format(&self) -> Result<(), Unsupported> {
+        match self.solver.as_ref().and_then(Spec::profile) {
+            Some(profile) if profile.format() != self.format => Err(Unsupported::NotRead {
+                solver: profile.name().to_owned(),
+                reads: profile.format(),
+                written: self.format,
+            }),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// A benchmark, ready to be written.
@@ -158,6 +173,7 @@ impl Emitted {
 /// # Errors
 /// What is not supported, and what is too large.
 pub fn emit(problem: &Problem, objective: &Objective, config: &EmitConfig) -> Result<Emitted, Error> {
+    config.demand_format()?;
     let stop = || config.deadline.passed();
     let dialect = Dialect::new(config.solver.as_ref());
     // A core is about everything that was said, whether it can matter or not.

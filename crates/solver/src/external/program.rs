@@ -162,7 +162,7 @@ mod tests {
             "buildin",
             "cadicle",
             "ls",
-            "glucose",
+            "lingeling",
             "/usr/bin/z3x",
             "",
         ]

@@ -7,7 +7,7 @@ use crate::files::{cannot_write, read_bytes, reason};
 use crate::output::Output;
 use hyperplan_compare::foreign::{self, is_foreign};
 use hyperplan_compare::merge::added;
-use hyperplan_compare::{Log, Past, Record, prepare, tidy};
+use hyperplan_compare::{Limit, Log, Past, Record, prepare, tidy};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
@@ -19,7 +19,7 @@ pub(super) fn run(args: &args::Compare, out: &mut Output) -> Result {
         }
         None => None,
     };
-    let more = read(&args.cluster.merge, out)?;
+    let more = read(&args.cluster.merge, args.cluster.limit, out)?;
     let folder = prepare(&args.out).map_err(|error| cannot_write(&args.out, &error))?;
     let records = put_together(args, &more, out)?;
     tidy(&folder);
@@ -35,14 +35,18 @@ pub(super) fn run(args: &args::Compare, out: &mut Output) -> Result {
     Ok(status.max(Exit::Undecided))
 }
 
-/// The runs of some logs, and results of others.
-fn read(paths: &[PathBuf], out: &Output) -> Result<Vec<Record>> {
+/// The runs of some logs, and results of others, with that limit where they have none.
+fn read(paths: &[PathBuf], limit: Option<f64>, out: &Output) -> Result<Vec<Record>> {
     let mut all = Vec::new();
     for path in paths {
         if is_foreign(path) {
             let cannot = |why: String| Failure::input(format_args!("cannot read {}: {why}", path.display()));
             let bytes = read_bytes(path).map_err(|error| cannot(reason(&error)))?;
-            all.extend(foreign::read(path, &bytes).map_err(|error| cannot(error.to_string()))?);
+            let mut theirs = foreign::read(path, &bytes).map_err(|error| cannot(error.to_string()))?;
+            for run in theirs.iter_mut().filter(|run| run.limit == Limit::default()) {
+                run.limit.wall_s = limit;
+            }
+            all.extend(theirs);
             continue;
         }
         let Past { records, notes } = Log::look(path).map_err(Failure::input)?;
@@ -56,9 +60,7 @@ fn read(paths: &[PathBuf], out: &Output) -> Result<Vec<Record>> {
 pub(super) fn put_together(args: &args::Compare, more: &[Record], out: &Output) -> Result<Vec<Record>> {
     let (mut log, mut records) = open(&args.out, out)?;
     let new = added(&records, more).map_err(Failure::input)?;
-    for record in &new {
-        log.append(record).map_err(Failure::input)?;
-    }
+    log.extend(&new).map_err(Failure::input)?;
     out.remark(format_args!("note: {} of {} runs are new", new.len(), more.len()));
     records.extend(new);
     Ok(records)

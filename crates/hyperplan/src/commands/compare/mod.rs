@@ -37,15 +37,16 @@ pub(super) struct Measure {
     pub(super) folder: PathBuf,
 }
 
-/// Measures solvers on benchmarks, as the command does that says the same. Wrong answers are found, and are no failure.
-pub(super) fn measure(what: Measure, verbose: bool, out: &mut Output) -> Result {
+/// Measures solvers on benchmarks, as the command does that says the same, and gives these runs, without others that the
+/// log may have; none if it was interrupted. Wrong answers are found, and are no failure.
+pub(super) fn measure(what: Measure, verbose: bool, out: &mut Output) -> Result<Option<Vec<Record>>> {
     let Measure { files, solver, seconds, jobs, folder } = what;
     let args = args::Compare::new(files, solver, seconds);
     let args = args::Compare { jobs, out: folder, ..args };
-    Ok(match run(&args, verbose, out)? {
-        Exit::Undecided => Exit::Undecided,
-        _ => Exit::Good,
-    })
+    let Some(comparison) = Comparison::new(&args, out)? else { return Ok(Some(Vec::new())) };
+    let Some(records) = done(&args, &comparison.runs(out)?, verbose, out)? else { return Ok(None) };
+    report(&args, &records, out)?;
+    Ok(Some(records))
 }
 
 /// The runs of some logs, each once.
@@ -78,6 +79,14 @@ pub(crate) fn run(args: &args::Compare, verbose: bool, out: &mut Output) -> Resu
 
 /// Does the runs on this machine, and reports.
 fn here(args: &args::Compare, runs: &[Run], verbose: bool, out: &mut Output) -> Result {
+    match done(args, runs, verbose, out)? {
+        Some(records) => report(args, &records, out),
+        None => Ok(Exit::Undecided),
+    }
+}
+
+/// Does the runs that are not in the log, and gives all; none if it was interrupted.
+fn done(args: &args::Compare, runs: &[Run], verbose: bool, out: &mut Output) -> Result<Option<Vec<Record>>> {
     let doing = Doing::new(args)?;
     let (mut log, past) = open(&args.out, out)?;
     let wanted: BTreeSet<&str> = runs.iter().map(|run| run.key.as_str()).collect();
@@ -96,10 +105,10 @@ fn here(args: &args::Compare, runs: &[Run], verbose: bool, out: &mut Output) -> 
         args.out.join(LOG).display()
     );
     match all {
-        Ok(true) => report(args, &in_order(records, runs, out), out),
+        Ok(true) => Ok(Some(in_order(records, runs, out))),
         Ok(false) => {
             out.error(format_args!("interrupted: {kept}"));
-            Ok(Exit::Undecided)
+            Ok(None)
         }
         Err(failure) => Err(Failure::new(failure.status, format_args!("{}; {kept}", failure.message))),
     }

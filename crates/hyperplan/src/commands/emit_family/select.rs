@@ -59,26 +59,18 @@ pub(super) fn run(
             format_args!("--select {count}: there are {all} benchmarks to choose from; make more of them");
         return Err(Failure::input(what));
     }
-    let mut logs = wanted.measured.clone();
     let mut limit = wanted.measure_limit;
-    if logs.is_empty() {
-        let seconds = *limit.get_or_insert(60.0);
-        let files = manifest.benchmarks.iter().map(|entry| folder.join(&entry.file).display().to_string());
-        let measure = Measure {
-            files: files.collect(),
-            solver: wanted.measure_by.clone(),
-            seconds,
-            jobs: wanted.jobs.and_then(|jobs| u16::try_from(jobs.get()).ok()).unwrap_or(1),
-            folder: folder.join(MEASURED),
-        };
-        guard::doing("measuring benchmarks");
-        let status = compare::measure(measure, verbose, out)?;
-        if status == Exit::Undecided {
-            return Ok(status);
+    let records = match wanted.measured.as_slice() {
+        [] => {
+            let seconds = *limit.get_or_insert(60.0);
+            match compare::measure(measure(wanted, (folder, manifest), seconds), verbose, out)? {
+                Some(records) => records,
+                None => return Ok(Exit::Undecided),
+            }
         }
-        logs = vec![folder.join(MEASURED).join(compare::LOG)];
-    }
-    let records = of_family(manifest, compare::look(&logs, out)?, limit);
+        logs => compare::look(logs, out)?,
+    };
+    let records = of_family(manifest, records, limit);
     let limit_s = match limit {
         Some(limit) => limit,
         None => the_limit(&records)?,
@@ -112,6 +104,19 @@ pub(super) fn run(
     let selected = write(folder, selected)?;
     say(&selected, &folder.join(SELECTED), out)?;
     Ok(Exit::Good)
+}
+
+/// What is measured of a family.
+fn measure(wanted: &args::Family, (folder, manifest): (&Path, &Manifest), seconds: f64) -> Measure {
+    guard::doing("measuring benchmarks");
+    let files = manifest.benchmarks.iter().map(|entry| folder.join(&entry.file).display().to_string());
+    Measure {
+        files: files.collect(),
+        solver: wanted.measure_by.clone(),
+        seconds,
+        jobs: wanted.jobs.and_then(|jobs| u16::try_from(jobs.get()).ok()).unwrap_or(1),
+        folder: folder.join(MEASURED),
+    }
 }
 
 /// The runs on benchmarks of the family as they are, with that limit if there is one, by whatever path they were named.

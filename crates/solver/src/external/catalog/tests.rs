@@ -27,8 +27,8 @@ fn the_table_is_good() {
     let names: Vec<&str> = catalog.profiles().iter().map(|profile| profile.name()).collect();
     let smt = ["z3", "cvc5", "yices", "bitwuzla"];
     let qbf = ["depqbf", "caqe", "qute", "rareqs"];
-    let sat = ["kissat", "cryptominisat", "minisat", "picosat"];
-    assert_eq!(names, [smt, qbf, sat].concat());
+    let sat = ["kissat", "cryptominisat", "minisat", "picosat", "clasp", "glucose"];
+    assert_eq!(names, [&smt[..], &qbf, &sat].concat());
     // Those that get files of bits answer once, and are told which file.
     for profile in catalog.profiles().iter().filter(|profile| profile.format.is_some()) {
         let file = |arguments: &Vec<String>| arguments.iter().any(|argument| argument == FILE);
@@ -113,7 +113,7 @@ fn errors_have_a_place_and_advice() {
     assert_eq!(
         error("[[solver]]\nname = \"x\"\nlike = \"z4\"\n"),
         "etc/hyperplan.toml:3: there is no solver z4 to be like; there are z3, cvc5, yices, bitwuzla, depqbf, \
-         caqe, qute, rareqs, kissat, cryptominisat, minisat, picosat"
+         caqe, qute, rareqs, kissat, cryptominisat, minisat, picosat, clasp, glucose"
     );
     assert_eq!(
         error("[[solver]]\nname = \"x\"\nprogram = \"x\"\n[[solver]]\nname = \"x\"\nprogram = \"y\"\n"),
