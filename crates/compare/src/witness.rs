@@ -2,7 +2,9 @@
 
 use std::fs;
 
-use hyperplan_smt::{Benchmark, Model, ReadError, Request, check_partial_model, read_script, symbol_text};
+use hyperplan_smt::{
+    Benchmark, Model, ReadError, Request, check_partial_model, function_text, read_script, symbol_text,
+};
 use hyperplan_solver::{PrintedModel, PrintedModelError};
 
 use crate::heard::Heard;
@@ -93,7 +95,7 @@ fn of_model(request: &Request, text: &str, printed: &PrintedModel) -> Worth {
     }
 }
 
-/// What the declared symbols are, and what the first is missing that has no value.
+/// What the declared symbols and functions are, and what the first is missing that has no value.
 fn values(benchmark: &Benchmark, printed: &PrintedModel) -> (Model, Option<String>) {
     let terms = &benchmark.script.terms;
     let (mut model, mut gap) = (Model::new(), None);
@@ -101,6 +103,15 @@ fn values(benchmark: &Benchmark, printed: &PrintedModel) -> (Model, Option<Strin
         match printed.value(terms, symbol) {
             Ok(Some(value)) => model.insert(symbol, value),
             Ok(None) => gap = gap.or_else(|| Some(format!("no value for {}", symbol_text(terms, symbol)))),
+            Err(error) => gap = gap.or_else(|| Some(error.to_string())),
+        }
+    }
+    for &function in &benchmark.functions {
+        match printed.function(terms, function) {
+            Ok(Some(definition)) => model.define(function, definition.clone()),
+            Ok(None) => {
+                gap = gap.or_else(|| Some(format!("no value for {}", function_text(terms, function))))
+            }
             Err(error) => gap = gap.or_else(|| Some(error.to_string())),
         }
     }

@@ -5,10 +5,10 @@ use crate::term::{Op, Sort};
 use crate::value::{Value, mask, signed};
 
 /// The operator on values; `numbers` are its indices, such as the bits of an extraction. `None`
-/// where the result does not fit into 128 bits, and for leaves and quantifiers.
+/// where the result does not fit into 128 bits, and for leaves, declared functions and quantifiers.
 pub(crate) fn apply(op: Op, sort: Sort, args: &[Value], numbers: &[u32]) -> Option<Value> {
     match op {
-        Op::True | Op::Symbol | Op::Bound | Op::Const | Op::Forall => None,
+        Op::True | Op::Symbol | Op::Bound | Op::Const | Op::Apply | Op::Forall => None,
         Op::And => args.iter().try_fold(true, |all, v| Some(all & v.as_bool()?)).map(Value::Bool),
         Op::Eq => Some(Value::Bool(args[0] == args[1])),
         Op::Ite => Some(if args[0].as_bool()? { args[1] } else { args[2] }),

@@ -37,14 +37,14 @@ pub struct Evaluation {
 const UNKNOWN: u32 = u32::MAX;
 
 impl Evaluation {
-    /// Evaluates every term. Symbols without a value are false or zero. Quantified terms are
+    /// Evaluates every term. Symbols and functions without a value are false or zero. Quantified terms are
     /// unknown, and so is what depends on them.
     #[must_use]
     pub fn new(terms: &Terms, model: &Model) -> Self {
         Evaluation::with(terms, model, |sort| Some(Value::default_of(sort)))
     }
 
-    /// Evaluates every term. Symbols without a value are unknown, and so is what depends on them.
+    /// Evaluates every term. Symbols and functions without a value are unknown, and so is what depends on them.
     #[must_use]
     pub fn partial(terms: &Terms, model: &Model) -> Self {
         Evaluation::with(terms, model, |_| None)
@@ -53,7 +53,7 @@ impl Evaluation {
     fn with(terms: &Terms, model: &Model, absent: fn(Sort) -> Option<Value>) -> Self {
         let mut evaluation = Evaluation { cells: Vec::with_capacity(terms.len()), values: Vec::new() };
         for t in terms.iter() {
-            let value = evaluation.node(terms, model, absent, t);
+            let value = node(terms, model, absent, t, |t| evaluation.value(terms, t));
             let cell = match value {
                 None => UNKNOWN,
                 Some(Value::Bool(b)) => u32::from(b),
@@ -65,46 +65,6 @@ impl Evaluation {
             evaluation.cells.push(cell);
         }
         evaluation
-    }
-
-    fn node(
-        &self,
-        terms: &Terms,
-        model: &Model,
-        absent: fn(Sort) -> Option<Value>,
-        t: Term,
-    ) -> Option<Value> {
-        let sort = terms.sort(t);
-        match terms.view(t) {
-            View::Const(value) => Some(value),
-            View::Symbol(..) => model.get(t).filter(|v| v.sort() == sort).or_else(|| absent(sort)),
-            View::Bound(..) | View::Forall(..) => None,
-            View::App(Op::And, conjuncts) => self.and(conjuncts).map(Value::Bool),
-            View::App(Op::Ite, args) => {
-                let chosen = if self.truth(args[0])? { args[1] } else { args[2] };
-                self.value(terms, chosen)
-            }
-            View::App(op, &[a, b]) => apply(op, sort, &[self.value(terms, a)?, self.value(terms, b)?], &[]),
-            View::App(op, args) => {
-                let args: Option<Vec<Value>> = args.iter().map(|&t| self.value(terms, t)).collect();
-                apply(op, sort, &args?, &[])
-            }
-            View::Extend(op, a, by) => apply(op, sort, &[self.value(terms, a)?], &[by]),
-            View::Extract(a, hi, lo) => apply(Op::Extract, sort, &[self.value(terms, a)?], &[hi, lo]),
-        }
-    }
-
-    /// Three-valued conjunction: one false conjunct decides.
-    fn and(&self, conjuncts: &[Term]) -> Option<bool> {
-        let mut result = Some(true);
-        for &t in conjuncts {
-            match self.truth(t) {
-                Some(false) => return Some(false),
-                Some(true) => {}
-                None => result = None,
-            }
-        }
-        result
     }
 
     /// The value of a Boolean term.
@@ -141,6 +101,47 @@ impl Evaluation {
         }
         result.into()
     }
+}
+
+/// What a node is, by what its children are. What is declared and has no value in the model is what `absent` says.
+pub(crate) fn node(
+    terms: &Terms,
+    model: &Model,
+    absent: fn(Sort) -> Option<Value>,
+    t: Term,
+    value: impl Fn(Term) -> Option<Value>,
+) -> Option<Value> {
+    let sort = terms.sort(t);
+    let all = |args: &[Term]| args.iter().map(|&t| value(t)).collect::<Option<Vec<Value>>>();
+    match terms.view(t) {
+        View::Const(value) => Some(value),
+        View::Symbol(..) => model.get(t).filter(|v| v.sort() == sort).or_else(|| absent(sort)),
+        View::Apply(function, args) => match (model.get(t), model.function(function)) {
+            (Some(known), _) => Some(known),
+            (None, Some(definition)) => definition.value(&all(args)?).filter(|v| v.sort() == sort),
+            (None, None) => absent(sort),
+        },
+        View::Bound(..) | View::Forall(..) => None,
+        View::App(Op::And, conjuncts) => and(conjuncts, value).map(Value::Bool),
+        View::App(Op::Ite, args) => value(if value(args[0])?.as_bool()? { args[1] } else { args[2] }),
+        View::App(op, &[a, b]) => apply(op, sort, &[value(a)?, value(b)?], &[]),
+        View::App(op, args) => apply(op, sort, &all(args)?, &[]),
+        View::Extend(op, a, by) => apply(op, sort, &[value(a)?], &[by]),
+        View::Extract(a, hi, lo) => apply(Op::Extract, sort, &[value(a)?], &[hi, lo]),
+    }
+}
+
+/// Three-valued conjunction: one false conjunct decides.
+fn and(conjuncts: &[Term], value: impl Fn(Term) -> Option<Value>) -> Option<bool> {
+    let mut result = Some(true);
+    for &t in conjuncts {
+        match value(t).and_then(Value::as_bool) {
+            Some(false) => return Some(false),
+            Some(true) => {}
+            None => result = None,
+        }
+    }
+    result
 }
 
 /// What became of the assertions of a script under a model.

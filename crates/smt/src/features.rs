@@ -19,6 +19,8 @@ pub struct Features {
     pub real: bool,
     /// A term of an enumeration.
     pub datatypes: bool,
+    /// A declared function with arguments.
+    pub functions: bool,
 }
 
 impl Features {
@@ -36,8 +38,9 @@ impl Features {
     pub fn add(&mut self, terms: &Terms, t: Term) {
         let op = terms.op(t);
         self.quantifiers |= op == Op::Forall;
+        self.functions |= op == Op::Apply;
         match terms.sort(t) {
-            Sort::Bool if !matches!(op, Op::Symbol | Op::Bound) => {}
+            Sort::Bool if !matches!(op, Op::Symbol | Op::Bound | Op::Apply) => {}
             sort => self.add_sort(sort),
         }
     }
@@ -69,24 +72,30 @@ impl Features {
             int: self.int | other.int,
             real: self.real | other.real,
             datatypes: self.datatypes | other.datatypes,
+            functions: self.functions | other.functions,
         }
     }
 }
 
-/// The smallest logic for those features. Mixtures of bit-vectors, numbers and enumerations are in no
-/// competition logic; they get `ALL`.
+/// The smallest logic for those features. Mixtures of bit-vectors, numbers and enumerations, of which none is written, get
+/// `ALL`.
 #[must_use]
 pub fn logic(features: &Features) -> &'static str {
-    let Features { quantifiers, booleans: _, bitvec, int, real, datatypes } = *features;
-    if datatypes {
-        return if bitvec || int || real { "ALL" } else { ["QF_DT", "UFDT"][usize::from(quantifiers)] };
-    }
-    match (bitvec, int, real) {
-        (false, false, false) => ["QF_UF", "UF"][usize::from(quantifiers)],
-        (true, false, false) => ["QF_BV", "BV"][usize::from(quantifiers)],
-        (false, true, false) => ["QF_LIA", "LIA"][usize::from(quantifiers)],
-        (false, false, true) => ["QF_LRA", "LRA"][usize::from(quantifiers)],
-        (false, true, true) => ["QF_LIRA", "LIRA"][usize::from(quantifiers)],
-        (true, _, _) => "ALL",
+    let Features { quantifiers, booleans: _, bitvec, int, real, datatypes, functions } = *features;
+    // Without quantifiers and functions, with either, with both.
+    let [plain, quantified, applied, both] = match (datatypes, bitvec, int, real) {
+        (false, false, false, false) => ["QF_UF", "UF", "QF_UF", "UF"],
+        (false, true, false, false) => ["QF_BV", "BV", "QF_UFBV", "UFBV"],
+        (false, false, true, false) => ["QF_LIA", "LIA", "QF_UFLIA", "UFLIA"],
+        (false, false, false, true) => ["QF_LRA", "LRA", "QF_UFLRA", "UFLRA"],
+        (false, false, true, true) => ["QF_LIRA", "LIRA", "QF_UFLIRA", "UFLIRA"],
+        (true, false, false, false) => ["QF_DT", "UFDT", "QF_UFDT", "UFDT"],
+        (true, ..) | (false, true, ..) => return "ALL",
+    };
+    match (quantifiers, functions) {
+        (false, false) => plain,
+        (true, false) => quantified,
+        (false, true) => applied,
+        (true, true) => both,
     }
 }

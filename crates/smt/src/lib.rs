@@ -23,13 +23,15 @@ pub use eval::{Evaluation, ModelCheck, Verdict, check_model, check_partial_model
 pub use features::{Features, logic};
 pub use lexer::{Context, Token, Tokens, parts, tokens};
 pub use rational::Rational;
-pub use read::{Benchmark, Origin, ReadError, is_large_number, read_script, read_value};
+pub use read::{
+    Benchmark, Definition, Origin, ReadError, is_large_number, read_definitions, read_script, read_value,
+};
 pub use request::Request;
 pub use script::{Script, Section};
-pub use term::{Enumeration, Op, Sort, Stem, Term};
+pub use term::{Enumeration, Function, Op, Sort, Stem, Term};
 pub use terms::{Terms, View};
-pub use value::{Model, Value};
+pub use value::{Interpretation, Model, Value};
 pub use write::{
-    Ask, Header, Printer, SortName, Status, SymbolName, WriteOptions, symbol_text, term_text, value_text,
-    write_comment, write_header, write_script,
+    Ask, Header, Printer, SortName, Status, SymbolName, WriteOptions, function_text, symbol_text, term_text,
+    value_text, write_comment, write_header, write_script,
 };

@@ -1,7 +1,7 @@
 //! Scripts: terms and assertions over them.
 
-use crate::term::Term;
-use crate::terms::Terms;
+use crate::term::{Function, Term};
+use crate::terms::{Terms, View};
 
 /// An arena of terms with a growing list of assertions, each a disjunction.
 #[derive(Default)]
@@ -111,5 +111,18 @@ impl Script {
         let mut used = self.used_terms();
         used.retain(|&t| self.terms.is_symbol(t));
         used
+    }
+
+    /// The declared functions that are applied in assertions, in order of their making.
+    #[must_use]
+    pub fn functions(&self) -> Vec<Function> {
+        let applied = self.used_terms().into_iter().filter_map(|t| match self.terms.view(t) {
+            View::Apply(function, _) => Some(function),
+            _ => None,
+        });
+        let mut functions: Vec<Function> = applied.collect();
+        functions.sort_unstable();
+        functions.dedup();
+        functions
     }
 }

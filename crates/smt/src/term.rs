@@ -108,6 +108,10 @@ impl fmt::Display for Sort {
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub struct Stem(pub(crate) u32);
 
+/// A function of an arena that is not interpreted, by its number.
+#[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct Function(pub(crate) u32);
+
 /// The operator of a node. `or`, `xor`, `exists` and the other comparisons are complements of
 /// these.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, Debug)]
@@ -154,12 +158,14 @@ pub enum Op {
     IntMod,
     /// An integer as a real.
     ToReal,
+    /// A declared function, applied.
+    Apply,
     /// Universal quantification: the bound variables, then the body.
     Forall,
 }
 
 impl Op {
-    /// What the operator is called in SMT-LIB; empty for leaves.
+    /// What the operator is called in SMT-LIB; empty for leaves and for functions, which have names of their own.
     #[must_use]
     pub fn name(self) -> &'static str {
         self.row().0
@@ -193,6 +199,7 @@ impl Op {
             Op::IntDiv => ("div", Some(0)),
             Op::IntMod => ("mod", Some(0)),
             Op::ToReal => ("to_real", Some(0)),
+            Op::Apply => ("", Some(1)),
             Op::Forall => ("forall", Some(0)),
         }
     }

@@ -1,9 +1,12 @@
 //! Values of terms, and models.
 
+use std::fmt;
+use std::sync::Arc;
+
 use rustc_hash::FxHashMap;
 
 use crate::rational::Rational;
-use crate::term::{Enumeration, Sort, Term};
+use crate::term::{Enumeration, Function, Sort, Term};
 
 /// The value of a term.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, Debug)]
@@ -107,10 +110,18 @@ pub(crate) fn signed(bits: u128, width: u32) -> i128 {
     ((bits << shift) as i128) >> shift
 }
 
-/// Values of declared symbols. A symbol that has none counts as false, zero or the first constructor: a model is total.
+/// What a declared function is.
+pub trait Interpretation: fmt::Debug + Send + Sync {
+    /// What it gives for arguments; `None` where that is not known.
+    fn value(&self, args: &[Value]) -> Option<Value>;
+}
+
+/// Values of declared symbols, and what declared functions are. What has none counts as false, zero or the first
+/// constructor: a model is total.
 #[derive(Clone, Debug, Default)]
 pub struct Model {
     values: FxHashMap<Term, Value>,
+    functions: FxHashMap<Function, Arc<dyn Interpretation>>,
 }
 
 impl Model {
@@ -120,7 +131,7 @@ impl Model {
         Model::default()
     }
 
-    /// Sets the value of a symbol; of a complemented Boolean symbol too.
+    /// Sets the value of a symbol, or of a function for some arguments; of a complemented Boolean one too.
     pub fn insert(&mut self, symbol: Term, value: Value) {
         let value = match value {
             Value::Bool(b) => Value::Bool(b ^ symbol.is_negated()),
@@ -137,6 +148,17 @@ impl Model {
             Value::Bool(b) => Value::Bool(b ^ symbol.is_negated()),
             _ => value,
         })
+    }
+
+    /// Says what a function is.
+    pub fn define(&mut self, function: Function, meant: impl Interpretation + 'static) {
+        self.functions.insert(function, Arc::new(meant));
+    }
+
+    /// What a function is, where that was said.
+    #[must_use]
+    pub fn function(&self, function: Function) -> Option<&dyn Interpretation> {
+        self.functions.get(&function).map(|meant| &**meant)
     }
 
     /// The truth value of a Boolean literal or constant; a symbol without a value is false.

@@ -20,8 +20,8 @@ impl<'t> Reader<'t> {
             }
             self.command(at, command)?;
         }
-        let Reader { script, symbols, origins, assertions, .. } = self;
-        Ok(Benchmark { script, symbols, origins, assertions })
+        let Reader { script, symbols, functions, origins, assertions, .. } = self;
+        Ok(Benchmark { script, symbols, functions, origins, assertions })
     }
 
     /// A command, once its name was read.
@@ -35,11 +35,11 @@ impl<'t> Reader<'t> {
             "check-sat" => self.checked = true,
             "declare-fun" => {
                 let (at, name) = self.name()?;
-                self.open()?;
-                if self.token()?.1 != Token::Close {
-                    return Err(Trouble::unsupported(at, "declare-fun with arguments"));
+                let domain = self.domain()?;
+                match domain.as_slice() {
+                    [] => self.declare(at, name)?,
+                    domain => self.declare_function(at, name, domain)?,
                 }
-                self.declare(at, name)?;
             }
             "declare-const" => {
                 let (at, name) = self.name()?;
@@ -65,6 +65,14 @@ impl<'t> Reader<'t> {
         let symbol = self.terms().symbol(stem, None, sort);
         self.symbols.push(symbol);
         self.known(at, name, Meaning::Term(symbol))
+    }
+
+    fn declare_function(&mut self, at: usize, name: &'t str, domain: &[Sort]) -> Result<(), Trouble> {
+        let range = self.sort()?;
+        let stem = self.terms().verbatim_stem(name);
+        let function = self.terms().function(stem, domain, range);
+        self.functions.push(function);
+        self.known(at, name, Meaning::Function(function))
     }
 
     /// Adds a symbol, which has to be new.
@@ -99,7 +107,7 @@ impl<'t> Reader<'t> {
     }
 
     /// A definition, with arguments or without.
-    fn define(&mut self, arguments: bool) -> Result<(), Trouble> {
+    pub(super) fn define(&mut self, arguments: bool) -> Result<(), Trouble> {
         let (at, name) = self.name()?;
         let scope = self.names.enter();
         let parameters = if arguments { self.parameters()? } else { Vec::new() };

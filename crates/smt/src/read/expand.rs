@@ -10,10 +10,10 @@ use crate::value::Value;
 
 /// A definition with arguments.
 pub(super) struct Macro {
-    parameters: Vec<Term>,
-    body: Term,
+    pub(super) parameters: Vec<Term>,
+    pub(super) body: Term,
     /// What of the body can depend on the parameters, children before parents.
-    nodes: Vec<Term>,
+    pub(super) nodes: Vec<Term>,
 }
 
 impl Macro {
@@ -89,6 +89,7 @@ impl Reader<'_> {
                 let bound = bound.to_vec();
                 return Ok(terms.forall(&bound, children[children.len() - 1]));
             }
+            View::Apply(function, _) => return Ok(terms.apply(function, children)),
             View::App(op, _) => op,
         };
         let built = match (op, children) {

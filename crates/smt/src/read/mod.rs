@@ -6,6 +6,7 @@
 mod arith;
 mod bits;
 mod commands;
+mod definition;
 mod expand;
 mod names;
 mod operators;
@@ -17,11 +18,12 @@ use rustc_hash::FxHashMap;
 
 use crate::lexer::{Tokens, tokens};
 use crate::script::Script;
-use crate::term::{Sort, Term};
+use crate::term::{Function, Sort, Term};
 use crate::terms::Terms;
 use expand::Macro;
 use names::Names;
 
+pub use definition::{Definition, read_definitions};
 pub use value::{is_large_number, read_value};
 
 /// A benchmark that was read: what it declares, and what it asserts before its check.
@@ -33,6 +35,8 @@ pub struct Benchmark {
     pub script: Script,
     /// The declared symbols, in order.
     pub symbols: Vec<Term>,
+    /// The declared functions with arguments, in order.
+    pub functions: Vec<Function>,
     /// Where each assertion of the script comes from.
     pub origins: Vec<Origin>,
     /// How many assertions there are in the text.
@@ -75,8 +79,8 @@ pub enum ReadError {
 
 /// Reads a benchmark with at most one `check-sat`, after which nothing is declared or asserted.
 ///
-/// Numerals stand for reals where a real is needed. `push`, `pop`, functions and sorts that are not interpreted, and
-/// products and quotients of variables are not supported.
+/// Numerals stand for reals where a real is needed. `push`, `pop`, sorts that are not interpreted, and products and
+/// quotients of variables are not supported.
 ///
 /// # Errors
 /// [`ReadError`], at the first place that cannot be read.
@@ -95,6 +99,7 @@ struct Reader<'t> {
     macros: Vec<Macro>,
     script: Script,
     symbols: Vec<Term>,
+    functions: Vec<Function>,
     origins: Vec<Origin>,
     assertions: usize,
     /// Whether the check has come.
@@ -117,6 +122,7 @@ impl<'t> Reader<'t> {
             macros: Vec::new(),
             script: Script::new(),
             symbols: Vec::new(),
+            functions: Vec::new(),
             origins: Vec::new(),
             assertions: 0,
             checked: false,

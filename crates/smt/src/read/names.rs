@@ -2,13 +2,15 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::term::Term;
+use crate::term::{Function, Term};
 
 /// What a symbol stands for.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub(super) enum Meaning {
     /// A term.
     Term(Term),
+    /// A function that is declared.
+    Function(Function),
     /// A macro, by its number.
     Macro(usize),
 }

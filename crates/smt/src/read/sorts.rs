@@ -71,6 +71,23 @@ impl<'t> Reader<'t> {
     /// A sort.
     pub(super) fn sort(&mut self) -> Result<Sort, Trouble> {
         let (at, token) = self.token()?;
+        self.sort_from(at, token)
+    }
+
+    /// Sorts in parentheses.
+    pub(super) fn domain(&mut self) -> Result<Vec<Sort>, Trouble> {
+        self.open()?;
+        let mut sorts = Vec::new();
+        loop {
+            match self.token()? {
+                (_, Token::Close) => return Ok(sorts),
+                (at, token) => sorts.push(self.sort_from(at, token)?),
+            }
+        }
+    }
+
+    /// A sort, by its first token.
+    fn sort_from(&mut self, at: usize, token: Token<'t>) -> Result<Sort, Trouble> {
         match token {
             Token::Open => self.sort_of_width(at),
             Token::Word(name) | Token::Quoted(name) => match self.sorts.get(name) {

@@ -7,7 +7,7 @@ use super::value::{decimal, vector};
 use super::{Trouble, shown};
 use crate::lexer::Token;
 use crate::name::is_reserved;
-use crate::term::{Sort, Term};
+use crate::term::{Function, Sort, Term};
 use crate::value::Value;
 
 /// What has begun and not ended. Its parts are on the stack of terms, from `start` on.
@@ -39,6 +39,7 @@ enum Kind<'t> {
 #[derive(Clone, Copy)]
 enum Head {
     Operator(Operator),
+    Function(Function),
     Macro(usize),
 }
 
@@ -136,6 +137,7 @@ impl<'t> Reader<'t> {
     fn head(&self, at: usize, name: &str) -> Result<Head, Trouble> {
         match self.names.get(name) {
             Some(Meaning::Macro(number)) => Ok(Head::Macro(number)),
+            Some(Meaning::Function(function)) => Ok(Head::Function(function)),
             Some(Meaning::Term(_)) => Err(Trouble::syntax(at, format!("{} takes no arguments", shown(name)))),
             None => match Operator::named(name) {
                 Some(operator) => Ok(Head::Operator(operator)),
@@ -213,6 +215,7 @@ impl<'t> Reader<'t> {
             Kind::Application(head) => {
                 let t = match head {
                     Head::Operator(operator) => self.apply(began, operator, &stack.terms[start..])?,
+                    Head::Function(function) => self.applied(began, function, &stack.terms[start..])?,
                     Head::Macro(number) => self.expand(began, number, &stack.terms[start..])?,
                 };
                 self.check_room(began, 0)?;
@@ -244,6 +247,20 @@ impl<'t> Reader<'t> {
             Kind::Annotated => {}
         }
         Ok(())
+    }
+
+    /// A declared function, applied.
+    fn applied(&mut self, at: usize, function: Function, args: &[Term]) -> Result<Term, Trouble> {
+        let domain = self.terms().domain(function).to_vec();
+        if args.len() != domain.len() {
+            let (needed, found) = (domain.len(), args.len());
+            return Err(Trouble::syntax(at, format!("{needed} arguments are needed here, not {found}")));
+        }
+        let mut fitting = Vec::with_capacity(args.len());
+        for (&sort, &t) in domain.iter().zip(args) {
+            fitting.push(self.of_sort(at, t, sort)?);
+        }
+        Ok(self.terms().apply(function, &fitting))
     }
 
     /// A piece of what is said of a term. Only names matter.
@@ -288,7 +305,9 @@ impl<'t> Reader<'t> {
     fn symbol(&self, at: usize, name: &str) -> Result<Term, Trouble> {
         match self.names.get(name) {
             Some(Meaning::Term(t)) => Ok(t),
-            Some(Meaning::Macro(_)) => Err(Trouble::syntax(at, format!("{} takes arguments", shown(name)))),
+            Some(Meaning::Macro(_) | Meaning::Function(_)) => {
+                Err(Trouble::syntax(at, format!("{} takes arguments", shown(name))))
+            }
             None => Err(Trouble::unsupported(at, format!("{}, which is not declared,", shown(name)))),
         }
     }

@@ -1,9 +1,10 @@
 //! What is read, and what is refused.
 
 use super::*;
-use crate::eval::Evaluation;
+use crate::eval::{Evaluation, Verdict};
 use crate::term::Sort;
 use crate::value::{Model, Value};
+use crate::write::{WriteOptions, write_script};
 
 fn refused(text: &str) -> String {
     match read_script(text) {
@@ -188,7 +189,6 @@ fn what_is_not_supported_is_said() {
         ("(push 1)", "1:1: push"),
         ("(check-sat)\n (assert true)", "2:2: assert after check-sat"),
         ("(check-sat)(get-assertions)", "1:12: get-assertions"),
-        ("(declare-fun f (Int) Int)", "1:14: declare-fun with arguments"),
         ("(declare-const a (Array Int Int))", "1:18: sort Array"),
         ("(declare-const a (_ BitVec 129))", "1:18: a bit-vector of 129 bits"),
         (
@@ -228,6 +228,10 @@ fn what_makes_no_sense_is_an_error() {
         ("(define-fun f ((x Int)) Int x)(assert (= f 1))", "1:42: f takes arguments"),
         ("(define-fun f ((x Int)) Int x)(assert (= (f) 1))", "1:43: 1 arguments are needed here, not 0"),
         ("(declare-const p Bool)(assert (p true))", "1:32: p takes no arguments"),
+        ("(declare-fun f (Int Real) Int)(assert (= (f 1) 1))", "1:43: 2 arguments are needed here, not 1"),
+        ("(declare-fun f (Int) Int)(assert (= (f true) 1))", "1:38: Int is needed here, not Bool"),
+        ("(declare-fun f (Int) Int)(assert (= f 1))", "1:37: f takes arguments"),
+        ("(declare-fun f (Int", "1:20: the text ends inside of a command"),
     ] {
         assert_eq!(refused(text), what, "{text}");
     }
@@ -274,4 +278,85 @@ fn macros_share_and_do_not_explode() {
     }
     let error = refused(&format!("{text}(assert (= a (f59 a)))"));
     assert!(error.contains("what expands to more than"), "{error}");
+}
+
+#[test]
+fn functions_are_read_written_and_evaluated() {
+    let text = "(declare-fun f ((_ BitVec 2) Bool) (_ BitVec 3))(declare-fun |g h| (Int) Bool)(declare-fun i () Int)\n\
+                (assert (= (f #b01 (|g h| i)) #b101))\n(assert (forall ((j Int)) (or (|g h| j) (< i j))))";
+    let read = read(text);
+    let script = &read.script;
+    let [f, g] = read.functions[..] else { panic!("two functions") };
+    let mut written = Vec::new();
+    write_script(&mut written, script, &WriteOptions::default()).expect("memory");
+    let written = String::from_utf8(written).expect("it is ASCII");
+    for part in [
+        "(set-logic ALL)\n(declare-fun f ((_ BitVec 2) Bool) (_ BitVec 3))\n(declare-fun |g h| (Int) Bool)\n(declare-fun i () Int)\n",
+        "(assert (= (f #b01 (|g h| i)) #b101))\n",
+        "(|g h| ",
+    ] {
+        assert!(written.contains(part), "{written}");
+    }
+    // z3, cvc5 and yices; one function by another that comes later.
+    let texts = [
+        "(define-fun f ((x!0 (_ BitVec 2)) (x!1 Bool)) (_ BitVec 3) (ite (and (= x!0 #b01) (k x!1)) #b101 #b000))",
+        "(define-fun |g h| ((_arg_1 Int)) Bool (or (= 7 _arg_1) (not (< 0 (- 3 _arg_1)))))",
+        "(define-fun k ((x Bool)) Bool (not x))",
+        "(define-fun broken ((x Int)) Int (+ x nowhere))",
+        "(define-fun constant () Int 3)",
+    ];
+    let definitions = read_definitions(&texts);
+    let names: Vec<&str> = definitions.iter().map(|(name, _)| *name).collect();
+    assert_eq!(names, ["g h", "k", "f"]);
+    let mut model = Model::new();
+    for (name, definition) in definitions {
+        match name {
+            "f" => model.define(f, definition),
+            "g h" => model.define(g, definition),
+            _ => assert_eq!(definition.value(&[Value::Int(1)]), None, "its argument is a Bool"),
+        }
+    }
+    for (i, decided) in [(2, Verdict::True), (3, Verdict::False), (7, Verdict::False)] {
+        model.insert(read.symbols[0], Value::Int(i));
+        let evaluation = Evaluation::new(&script.terms, &model);
+        assert_eq!(evaluation.clause(script.assertion(0)), decided, "i = {i}");
+        assert_eq!(evaluation.clause(script.assertion(1)), Verdict::Unknown);
+    }
+    // Of a function of which nothing is said, nothing is known, or that it gives the same for all.
+    let nothing = Model::new();
+    assert_eq!(Evaluation::partial(&script.terms, &nothing).clause(script.assertion(0)), Verdict::Unknown);
+    assert_eq!(Evaluation::new(&script.terms, &nothing).clause(script.assertion(0)), Verdict::False);
+}
+
+#[test]
+fn functions_join_the_logic() {
+    for (sorts, plain, quantified) in [
+        ("Bool Bool", "QF_UF", "UF"),
+        ("(_ BitVec 3) Bool", "QF_UFBV", "UFBV"),
+        ("Int Int", "QF_UFLIA", "UFLIA"),
+        ("Real Real", "QF_UFLRA", "UFLRA"),
+        ("Int Real", "QF_UFLIRA", "UFLIRA"),
+        ("D Bool", "QF_UFDT", "UFDT"),
+    ] {
+        let (domain, range) = match sorts.strip_prefix("(_ BitVec 3)") {
+            Some(range) => ("(_ BitVec 3)", range),
+            None => sorts.split_once(' ').expect("two sorts"),
+        };
+        let declared = format!(
+            "(declare-datatypes ((D 0)) (((a) (b))))(declare-fun x () {domain})(declare-fun f ({domain}) {range})"
+        );
+        for (assertion, logic) in [
+            ("(= (f x) (f x))", "QF_UF"),
+            ("(not (= (f x) (f (ite (= (f x) (f x)) x x))))", "QF_UF"),
+            ("(let ((y (f x))) (! (= y y) :named n))", "QF_UF"),
+        ] {
+            // What is true whatever the function is needs nothing.
+            let script = read(&format!("{declared}(assert {assertion})")).script;
+            assert_eq!(crate::logic(&crate::Features::of(&script)), logic, "{assertion}");
+        }
+        let script = read(&format!("{declared}(declare-fun y () {domain})(assert (= (f x) (f y)))")).script;
+        assert_eq!(crate::logic(&crate::Features::of(&script)), plain, "{sorts}");
+        let script = read(&format!("{declared}(assert (forall ((y {domain})) (= (f x) (f y))))")).script;
+        assert_eq!(crate::logic(&crate::Features::of(&script)), quantified, "{sorts}");
+    }
 }

@@ -4,6 +4,7 @@ mod arith;
 mod bitvec;
 mod boolean;
 mod enumeration;
+mod function;
 mod quantifier;
 mod view;
 
@@ -14,9 +15,10 @@ use rustc_hash::{FxHashMap, FxHasher};
 
 use crate::name;
 use crate::rational::Rational;
-use crate::term::{Op, Sort, Stem, Term};
+use crate::term::{Function, Op, Sort, Stem, Term};
 use crate::value::{Value, mask};
 
+use function::Signature;
 pub use view::View;
 
 /// One node: its arguments are `args[start..]` up to the start of the next node.
@@ -80,6 +82,8 @@ pub struct Terms {
     stems: Vec<name::Mangled>,
     stem_ids: FxHashMap<Box<str>, Stem>,
     enumerations: Vec<EnumerationText>,
+    functions: Vec<Signature>,
+    function_ids: FxHashMap<Signature, Function>,
     scratch: Vec<Term>,
 }
 
@@ -99,6 +103,8 @@ impl Terms {
             stems: Vec::new(),
             stem_ids: FxHashMap::default(),
             enumerations: Vec::new(),
+            functions: Vec::new(),
+            function_ids: FxHashMap::default(),
             scratch: Vec::new(),
         };
         let top = terms.intern(Op::True, Sort::Bool, &[]);

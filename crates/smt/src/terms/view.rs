@@ -1,7 +1,7 @@
 //! Terms taken apart.
 
 use super::Terms;
-use crate::term::{Op, Sort, Stem, Term};
+use crate::term::{Function, Op, Sort, Stem, Term};
 use crate::value::Value;
 
 /// What a node is. The complement bit of the handle is not part of it.
@@ -19,6 +19,8 @@ pub enum View<'a> {
     Extend(Op, Term, u32),
     /// The bits from high to low, both included.
     Extract(Term, u32, u32),
+    /// A declared function, applied.
+    Apply(Function, &'a [Term]),
     /// Universal quantification.
     Forall(&'a [Term], Term),
 }
@@ -36,6 +38,10 @@ impl Terms {
             Op::Bound => View::Bound(Stem(args[0].0), args[1].0.checked_sub(1)),
             Op::SignExtend | Op::ZeroExtend => View::Extend(op, args[0], args[1].0),
             Op::Extract => View::Extract(args[0], args[1].0, args[2].0),
+            Op::Apply => {
+                let (function, args) = args.split_last().expect("an application has its function");
+                View::Apply(Function(function.0), args)
+            }
             Op::Forall => {
                 let (body, bound) = args.split_last().expect("a quantifier has a body");
                 View::Forall(bound, *body)

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::io;
 
 use super::free::Free;
-use super::name::{SortName, SymbolName};
+use super::name::{FunctionName, SortName, SymbolName};
 use super::node_set::NodeSet;
 use crate::name::write_number;
 use crate::term::{Op, Term};
@@ -221,6 +221,12 @@ impl Walk<'_> {
                 return self.expand(w, !t);
             }
             (View::App(op, _), false) => op.name(),
+            (View::Apply(function, _), false) => {
+                w.write_all(b"(")?;
+                FunctionName { terms, function }.write(w)?;
+                self.scratch.stack.push(Frame::Arguments(t, 0));
+                return Ok(());
+            }
             (View::Extend(op, _, by), false) => {
                 write!(w, "((_ {} {by})", op.name())?;
                 self.scratch.stack.push(Frame::Arguments(t, 0));

@@ -21,7 +21,7 @@ use crate::term::Term;
 use crate::terms::Terms;
 use crate::value::Value;
 
-pub use name::{SortName, SymbolName, symbol_text};
+pub use name::{SortName, SymbolName, function_text, symbol_text};
 pub use printer::Printer;
 
 /// The expected answer, for `:status`.

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use crate::term::{Op, Sort, Term};
+use crate::term::{Function, Op, Sort, Term};
 use crate::terms::{Terms, View};
 
 /// A symbol or bound variable of an arena, for printing: with rsmt2 a symbol, and an expression too.
@@ -26,6 +26,18 @@ impl<'a> SymbolName<'a> {
         };
         let is_bound = self.terms.op(self.symbol) == Op::Bound;
         self.terms.mangled(stem).write_at(w, is_bound, time)
+    }
+}
+
+/// A function of an arena, for printing: with rsmt2 a symbol.
+pub(crate) struct FunctionName<'a> {
+    pub(crate) terms: &'a Terms,
+    pub(crate) function: Function,
+}
+
+impl FunctionName<'_> {
+    pub(crate) fn write(&self, w: &mut impl io::Write) -> io::Result<()> {
+        self.terms.mangled(self.terms.function_stem(self.function)).write(w)
     }
 }
 
@@ -56,5 +68,14 @@ pub fn symbol_text(terms: &Terms, symbol: Term) -> String {
     let mut text = Vec::new();
     // Writing to a vector cannot fail, and what is no symbol has no name.
     let _ = SymbolName::new(terms, symbol).write(&mut text);
+    String::from_utf8_lossy(&text).into_owned()
+}
+
+/// How a declared function is written, quotes included.
+#[must_use]
+pub fn function_text(terms: &Terms, function: Function) -> String {
+    let mut text = Vec::new();
+    // Writing to a vector cannot fail.
+    let _ = FunctionName { terms, function }.write(&mut text);
     String::from_utf8_lossy(&text).into_owned()
 }

@@ -6,12 +6,12 @@ use std::io;
 
 use super::expression::{Expression, Mark, Scratch, SharedName};
 use super::free::Free;
-use super::name::{SortName, SymbolName};
+use super::name::{FunctionName, SortName, SymbolName};
 use super::node_set::NodeSet;
 use super::rsmt2;
 use crate::features::Features;
-use crate::term::{Enumeration, Op, Sort, Term};
-use crate::terms::Terms;
+use crate::term::{Enumeration, Function, Op, Sort, Term};
+use crate::terms::{Terms, View};
 
 /// Terms deeper than this are cut by definitions: solvers' own parsers may recurse.
 const HEIGHT: u8 = 100;
@@ -34,6 +34,10 @@ pub struct Printer {
     datatypes: BTreeSet<Enumeration>,
     /// Those to be declared.
     undeclared_datatypes: Vec<Enumeration>,
+    /// The functions that occur.
+    functions: BTreeSet<Function>,
+    /// Those to be declared.
+    undeclared_functions: Vec<Function>,
     /// Symbols to be declared.
     undeclared: NodeSet,
     /// How many have been.
@@ -86,6 +90,11 @@ impl Printer {
             if terms.op(t) == Op::Symbol {
                 self.undeclared.insert(t);
             }
+            if let View::Apply(function, _) = terms.view(t)
+                && self.functions.insert(function)
+            {
+                self.undeclared_functions.push(function);
+            }
             for &child in terms.children(t) {
                 self.touch(child);
             }
@@ -113,18 +122,19 @@ impl Printer {
         }
     }
 
-    /// How many symbols have been declared.
+    /// How many symbols and functions have been declared.
     #[must_use]
     pub fn declared(&self) -> usize {
         self.declared
     }
 
-    /// Declares the enumerations and symbols that were found since the last call.
+    /// Declares the enumerations, functions and symbols that were found since the last call.
     ///
     /// # Errors
     /// When writing fails.
     pub fn declare(&mut self, w: &mut impl io::Write, terms: &Terms) -> io::Result<()> {
         self.declare_datatypes(w, terms)?;
+        self.declare_functions(w, terms)?;
         self.declared += self.undeclared.len();
         while let Some(symbol) = self.undeclared.pop_first() {
             w.write_all(b"(declare-fun ")?;
@@ -147,6 +157,24 @@ impl Printer {
                 w.write_all(b")")?;
             }
             w.write_all(b")))\n")?;
+        }
+        Ok(())
+    }
+
+    fn declare_functions(&mut self, w: &mut impl io::Write, terms: &Terms) -> io::Result<()> {
+        let mut functions = std::mem::take(&mut self.undeclared_functions);
+        functions.sort_unstable();
+        self.declared += functions.len();
+        for function in functions {
+            w.write_all(b"(declare-fun ")?;
+            rsmt2::symbol(w, &FunctionName { terms, function })?;
+            for (at, &sort) in terms.domain(function).iter().enumerate() {
+                w.write_all(if at == 0 { b" (" } else { b" " })?;
+                rsmt2::sort(w, &SortName::new(terms, sort))?;
+            }
+            w.write_all(b") ")?;
+            rsmt2::sort(w, &SortName::new(terms, terms.range(function)))?;
+            w.write_all(b")\n")?;
         }
         Ok(())
     }

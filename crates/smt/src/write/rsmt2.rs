@@ -14,7 +14,7 @@ use rsmt2::errors::{Error, ErrorKind};
 use rsmt2::print::{Expr2Smt, Sort2Smt, Sym2Smt};
 
 use super::expression::{Expression, SharedName};
-use super::name::{SortName, SymbolName};
+use super::name::{FunctionName, SortName, SymbolName};
 
 impl Sym2Smt for SymbolName<'_> {
     fn sym_to_smt2<W: io::Write>(&self, w: &mut W, _: ()) -> SmtRes<()> {
@@ -24,6 +24,12 @@ impl Sym2Smt for SymbolName<'_> {
 
 impl Expr2Smt for SymbolName<'_> {
     fn expr_to_smt2<W: io::Write>(&self, w: &mut W, _: ()) -> SmtRes<()> {
+        Ok(self.write(w)?)
+    }
+}
+
+impl Sym2Smt for FunctionName<'_> {
+    fn sym_to_smt2<W: io::Write>(&self, w: &mut W, _: ()) -> SmtRes<()> {
         Ok(self.write(w)?)
     }
 }

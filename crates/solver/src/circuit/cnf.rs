@@ -186,6 +186,7 @@ impl<S: Sink> Cnf<S> {
                 self.quantified(terms, v, (bound, body), directions, budget)?;
             }
             View::Forall(..) => return Err(S::unsupported("quantifiers").into()),
+            View::Apply(..) => return Err(S::unsupported("functions").into()),
             _ => return Err(S::unsupported("integers and reals").into()),
         }
         Ok(())
@@ -287,6 +288,7 @@ impl<S: Sink> Cnf<S> {
             View::Symbol(..) => self.symbol(terms, t, width),
             View::Bound(..) if S::QUANTIFIERS => (0..width).map(|_| self.gates.fresh()).collect(),
             View::Bound(..) | View::Forall(..) => return Err(S::unsupported("quantifiers")),
+            View::Apply(..) => return Err(S::unsupported("functions")),
             View::Extend(op, a, by) => {
                 let mut bits = self.bits_of(terms, a);
                 let fill = match (op, bits.last()) {

@@ -48,6 +48,7 @@ impl Profile {
             (features.int, Theory::Integers),
             (features.real, Theory::Reals),
             (features.datatypes, Theory::Datatypes),
+            (features.functions, Theory::Functions),
         ];
         if let Some((_, lacks)) = needed.into_iter().find(|(needed, theory)| *needed && !self.takes(*theory))
         {

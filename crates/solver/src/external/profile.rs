@@ -70,6 +70,7 @@ pub(crate) enum Theory {
     Integers,
     Reals,
     Datatypes,
+    Functions,
 }
 
 impl fmt::Display for Theory {
@@ -79,6 +80,7 @@ impl fmt::Display for Theory {
             Theory::Integers => "integers",
             Theory::Reals => "reals",
             Theory::Datatypes => "datatypes",
+            Theory::Functions => "functions",
         })
     }
 }
