@@ -1,6 +1,7 @@
 //! How an objective is going to be written, chosen once.
 
 use crate::enumerated::Enumerated;
+use crate::paths::Paths;
 use crate::variables::{ByVariable, Numbers};
 use crate::writing::Writer;
 use hyperplan_problem::answer::States;
@@ -116,6 +117,23 @@ impl<'a> Encoder<'a> {
             }
         };
         Ok(Encoder { problem, objective, states, task, graphs, writer })
+    }
+
+    /// The same with other things standing for what paths do; states have to be written by variable.
+    ///
+    /// # Errors
+    /// [`Error::NoFunctions`] where they are written one by one; those of [`Encoder::new`].
+    pub fn with_paths(mut self, paths: Paths) -> Result<Self, Error> {
+        let numbers = match self.states {
+            _ if paths == Paths::Symbols => return Ok(self),
+            States::Onehot | States::Enum => return Err(Error::NoFunctions { states: self.states.name() }),
+            States::Bitvec => Numbers::Bits,
+            States::Int => Numbers::Integers,
+            States::Real => Numbers::Reals,
+        };
+        let writer = ByVariable::new(self.task.clone(), self.graphs.clone(), numbers)?;
+        self.writer = Box::new(writer.with_paths(paths));
+        Ok(self)
     }
 
     /// Whether every path has finitely many states to be in.

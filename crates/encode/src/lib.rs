@@ -18,6 +18,7 @@ mod atom;
 mod encoder;
 mod enumerated;
 mod names;
+mod paths;
 mod query;
 #[cfg(test)]
 mod tests;
@@ -33,5 +34,6 @@ pub use hyperplan_relevance::{
 };
 pub use hyperplan_space::Graphs;
 pub use names::Copies;
+pub use paths::Paths;
 pub use query::Query;
 pub use writing::{Bound, Env, PathIx, Writer, Writing};

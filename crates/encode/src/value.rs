@@ -125,6 +125,28 @@ impl Val {
         }
     }
 
+    /// The sort of a term that holds its values; of a list of numbers, that of `numbers`, or a bit-vector of their width.
+    pub(crate) fn sort(&self, terms: &Terms, numbers: Sort) -> Sort {
+        match (self, numbers) {
+            (Val::Bool(_), _) => Sort::Bool,
+            (Val::Bits { lo, hi, .. }, _) => Sort::BitVec(width(*lo, *hi)),
+            (Val::Number(term), _) => terms.sort(*term),
+            (Val::Cases(cases), Sort::BitVec(_)) => {
+                Sort::BitVec(width(cases.first().map_or(0, |c| c.0), cases.last().map_or(0, |c| c.0)))
+            }
+            (Val::Cases(_), numbers) => numbers,
+        }
+    }
+
+    /// As a term of that sort, which must hold its values.
+    pub(crate) fn of_sort(&self, terms: &mut Terms, sort: Sort) -> Term {
+        match (self, sort) {
+            (Val::Bool(term), _) => *term,
+            (_, Sort::BitVec(width)) => self.bits_of_width(terms, width),
+            (_, sort) => self.number(terms, sort),
+        }
+    }
+
     /// As a signed bit-vector term of that width, which must hold its values.
     pub(crate) fn bits_of_width(&self, terms: &mut Terms, width: u32) -> Term {
         let (term, _, _) = self.bits(terms);

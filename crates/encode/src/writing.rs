@@ -133,6 +133,12 @@ pub trait Writing: Send {
     /// A path under a quantifier.
     fn bind(&mut self, terms: &mut Terms, path: PathId, goal: &Goal) -> Result<Bound, Error>;
 
+    /// A path that the solver chooses for each choice of bound variables, by functions of these: the path, and the
+    /// condition that it is one. By default it is bound by a quantifier instead.
+    fn depend(&mut self, _: &mut Terms, _: PathId, _: &[Term]) -> Option<(PathIx, Term)> {
+        None
+    }
+
     /// A known path, as constants.
     fn fix(&mut self, terms: &mut Terms, path: PathId, known: &Known) -> Option<PathIx>;
 

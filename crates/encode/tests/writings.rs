@@ -1,10 +1,10 @@
 //! Every way of writing states against brute force: terms are evaluated under all models there are.
 
 use hyperplan_encode::{
-    Encoder, Env, Error, Goal, Known, Limits, Narrowing, Pruning, Query, Relevant, States,
+    Encoder, Env, Error, Goal, Known, Limits, Narrowing, Paths, Pruning, Query, Relevant, States,
 };
 use hyperplan_problem::{PathId, Problem, Trace};
-use hyperplan_smt::{Model, Script, Sort, Term, Value, check_model};
+use hyperplan_smt::{Model, Op, Script, Sort, Term, Value, check_model};
 use hyperplan_tiny::{formula, holds, paths, problem, system};
 use proptest::prelude::*;
 
@@ -44,6 +44,8 @@ fn domain(script: &Script, symbol: Term) -> Vec<Value> {
 /// All models of a script, which are about these symbols too; `None` where there are too many candidates.
 fn models(script: &Script, wanted: &[Term]) -> Option<Vec<Model>> {
     let mut symbols = script.symbols();
+    // Paths apply functions to times, each another: what these give is as free as symbols.
+    symbols.extend(script.used_terms().into_iter().filter(|&t| script.terms.op(t) == Op::Apply));
     symbols.extend(wanted);
     symbols.sort_unstable();
     symbols.dedup();
@@ -194,6 +196,24 @@ proptest! {
             query.demand(&env, &goal);
             if let Some(found) = described(&query, &env) {
                 prop_assert_eq!(&found, &expected, "{} {:?}", states, pruning);
+            }
+        }
+    }
+
+    /// Functions describe the paths that symbols do, whatever moves depend on.
+    #[test]
+    fn functions_describe_the_same_paths(system in system(), formula in formula(&["p", "q"])) {
+        let problem = objective(&system, "exists p. forall q.", 1, &formula);
+        let others = paths(&problem.systems.raw[0], Q, 1);
+        let expected = expected(&problem, 1, |p| others.iter().all(|q| satisfied(&problem, &[p, q])));
+        for states in ALL.into_iter().filter(|states| !states.is_enumerated()) {
+            for how in [Paths::Functions, Paths::Policies] {
+                let encoder = encoder(&problem, states, Pruning::Full).with_paths(how).expect("by variable");
+                let query = winning(&encoder, Against::Cases).expect("it is small");
+                let found = query.and_then(|(query, env)| described(&query, &env));
+                if let Some(found) = found {
+                    prop_assert_eq!(&found, &expected, "{} {}", states, how);
+                }
             }
         }
     }

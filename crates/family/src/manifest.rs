@@ -108,6 +108,7 @@ mod tests {
             steps: 7,
             states: text("onehot"),
             quantifiers: text("keep"),
+            paths: text("symbols"),
             pruning: text("light"),
         };
         Record::Written(Box::new(Entry {

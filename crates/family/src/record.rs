@@ -35,6 +35,9 @@ pub struct About {
     pub states: String,
     /// How quantifiers are decided.
     pub quantifiers: String,
+    /// What stands for what paths do.
+    #[serde(default = "symbols", skip_serializing_if = "is_symbols")]
+    pub paths: String,
     /// How much is left out.
     #[serde(default = "light")]
     pub pruning: String,
@@ -43,6 +46,14 @@ pub struct About {
 /// What there was before there was a choice.
 fn light() -> String {
     "light".to_owned()
+}
+
+fn symbols() -> String {
+    "symbols".to_owned()
+}
+
+fn is_symbols(paths: &str) -> bool {
+    paths == "symbols"
 }
 
 /// A benchmark that was written.

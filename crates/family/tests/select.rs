@@ -65,6 +65,7 @@ fn entry(objective: Objective, seed: u64, steps: u32, encoding: usize, status: &
             steps,
             states: states.into(),
             quantifiers: quantifiers.into(),
+            paths: "symbols".into(),
             pruning: "light".into(),
         },
     }

@@ -305,7 +305,7 @@ pub(crate) enum Track {
     /// One query
     #[default]
     Single,
-    /// The dialogue of the search by counterexamples
+    /// The dialogue of the search by counterexamples; with `--quantifiers keep`, which steps of a strategy are forced
     Incremental,
     /// One query, and its model
     Model,
@@ -321,6 +321,17 @@ pub(crate) enum Status {
     Sat,
     Unsat,
     Unknown,
+}
+
+/// What stands for what paths do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Paths {
+    /// A symbol for each time
+    Symbols,
+    /// Functions of time; a path after a universal one depends on that too
+    Functions,
+    /// Functions of time, and moves of what is observed as well
+    Policies,
 }
 
 /// How much is left out of a benchmark.
@@ -356,6 +367,9 @@ pub(crate) struct Emit {
     /// How states are represented; several are a file each
     #[arg(long, value_parser = states(), value_name = "HOW,...", value_delimiter = ',', default_value = "auto")]
     pub(crate) states: Vec<Option<States>>,
+    /// What stands for what paths do; several are a file each
+    #[arg(long, value_enum, value_name = "HOW,...", value_delimiter = ',', default_values_t = [Paths::Symbols])]
+    pub(crate) paths: Vec<Paths>,
     /// A file for each value of a constant, such as T
     #[arg(long, value_name = "CONST=LO..HI", value_parser = range)]
     pub(crate) each: Option<(String, i64, i64)>,

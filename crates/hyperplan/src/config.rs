@@ -9,7 +9,7 @@ use crate::output::Output;
 use crate::pictures::Picture;
 use crate::signals;
 use chrono::{DateTime, NaiveDate, Utc};
-use hyperplan_plan::{Config, Pruning, States, Status, Track};
+use hyperplan_plan::{Config, Paths, Pruning, States, Status, Track};
 use hyperplan_solver::{Deadline, Format, Spec};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -96,6 +96,14 @@ pub(crate) fn pruning_name(pruning: Pruning) -> &'static str {
         Pruning::None => "none",
         Pruning::Light => "light",
         Pruning::Full => "full",
+    }
+}
+
+pub(crate) fn paths(typed: args::Paths) -> Paths {
+    match typed {
+        args::Paths::Symbols => Paths::Symbols,
+        args::Paths::Functions => Paths::Functions,
+        args::Paths::Policies => Paths::Policies,
     }
 }
 

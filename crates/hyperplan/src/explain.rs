@@ -126,13 +126,16 @@ fn unsupported(what: &Unsupported) -> String {
         }
         Unsupported::SingleQuery(quantifiers) => format!(
             "--quantifiers {quantifiers} gives a single query, which is no incremental benchmark; use --quantifiers \
-             cegis"
+             cegis or keep"
         ),
-        Unsupported::NoBits { .. } | Unsupported::NoTracks(_) => format!("{what}; use --format smt2"),
         Unsupported::NotRead { reads, .. } => {
             let format = reads.map_or("smt2", Format::name);
             format!("{what}; use --format {format}, or leave out --solver")
         }
+        Unsupported::NoBits { .. } | Unsupported::NoTracks(_) | Unsupported::NoFunctions(_) => {
+            format!("{what}; use --format smt2")
+        }
+        Unsupported::DialogueOfFunctions => format!("{what}; use --paths symbols"),
         Unsupported::NothingToWrite => format!("{what}; use --quantifiers keep, expand or cegis"),
         Unsupported::Dialogue => format!("{what}; use --quantifiers keep or expand, or --track incremental"),
         Unsupported::OneCheck => format!("{what}; use --quantifiers keep or expand"),
@@ -162,6 +165,7 @@ fn advice(error: &EncodeError) -> &'static str {
         EncodeError::NotEnumerable { .. } => "; use --states bitvec",
         EncodeError::Unbounded { .. } => ", which takes --states int or real",
         EncodeError::NotReal { .. } => "; use --states int",
+        EncodeError::NoFunctions { .. } => "; use --states bitvec",
         EncodeError::HorizonTooLong { .. } | EncodeError::TooLarge { .. } | EncodeError::Interrupted => "",
     }
 }

@@ -56,7 +56,9 @@ pub use horizon::{HorizonPart, PathHorizon};
 pub use hyperplan_horizon::Horizon;
 pub use hyperplan_import::{Dialect, Options as Reading};
 pub use hyperplan_plan::explain;
-pub use hyperplan_plan::{EmitConfig, Emitted, Quantifiers, Stage, Standing, States, Status, Track, Verdict};
+pub use hyperplan_plan::{
+    EmitConfig, Emitted, Paths, Quantifiers, Stage, Standing, States, Status, Track, Verdict,
+};
 pub use hyperplan_problem::answer;
 pub use hyperplan_solver::Spec;
 

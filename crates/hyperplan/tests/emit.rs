@@ -111,7 +111,27 @@ fn tracks() {
 
     for (arguments, message) in [
         (&["--track", "model", "--quantifiers", "cegis"][..], "asks for no model and no core"),
-        (&["--track", "incremental", "--quantifiers", "keep"], "which is no incremental benchmark"),
+        (&["--track", "incremental", "--quantifiers", "expand"], "which is no incremental benchmark"),
+        (
+            &["--paths", "functions", "--states", "onehot"],
+            "by variable, as bitvec, int or real, not as onehot; use --states",
+        ),
+        (
+            &["--paths", "policies", "--track", "incremental"],
+            "as symbols, not as functions; use --paths symbols",
+        ),
+        (
+            &["--paths", "functions", "--format", "qcir"],
+            "has no functions: paths have to be symbols there; use --format smt2",
+        ),
+        (
+            &["--paths", "functions", "--solver", "builtin"],
+            "the builtin solver has no functions: use one of z3, cvc5",
+        ),
+        (
+            &["--set", "T=1", "--track", "incremental", "--quantifiers", "keep"],
+            "and so no step of it to ask about",
+        ),
         (&["--solver", "builtin", "--quantifiers", "keep"], "the builtin solver cannot handle quantifiers"),
         (
             &["--solver", "yices", "--states", "enum"],

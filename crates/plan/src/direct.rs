@@ -14,7 +14,8 @@ pub(crate) struct Direct<'e, 'a> {
 }
 
 /// Builds the query with the quantifiers of later blocks inside, the paper's formula (16): a path constraint is a
-/// conjunct under `exists` and an antecedent under `forall`, and only what determines a path is quantified.
+/// conjunct under `exists` and an antecedent under `forall`, and only what determines a path is quantified. A path under
+/// `exists` that is written as functions of what is bound before it needs no quantifier.
 pub(crate) fn keep<'e, 'a>(
     encoder: &'e Encoder<'a>,
     blocks: &[Vec<PathId>],
@@ -25,16 +26,27 @@ pub(crate) fn keep<'e, 'a>(
     let mut direct = leading(encoder, blocks, &goal, Narrowing::default())?;
     let mut env = direct.env.clone();
     // From the outside in the paths are bound, from the inside out the formula is closed.
-    let mut open = Vec::new();
+    let (mut open, mut universal) = (Vec::new(), Vec::new());
     for (depth, block) in blocks.iter().enumerate().skip(1) {
         let own = depth % 2 == 0;
         for &path in block {
+            if own
+                && let Some((chosen, guard)) =
+                    direct.query.paths.depend(&mut direct.query.script.terms, path, &universal)
+            {
+                env[usize::from(path)] = Some(chosen);
+                open.push((own, Bound { path: chosen, variables: Vec::new(), guard }));
+                continue;
+            }
             let bound = direct.query.paths.bind(
                 &mut direct.query.script.terms,
                 path,
                 if own { &goal } else { &against },
             )?;
             env[usize::from(path)] = Some(bound.path);
+            if !own {
+                universal.extend(&bound.variables);
+            }
             open.push((own, bound));
         }
     }

@@ -151,12 +151,21 @@ pub enum Unsupported {
         /// What the file was to be written in.
         written: Option<Format>,
     },
+    /// Functions are for SMT-LIB.
+    #[error("{0} has no functions: paths have to be symbols there")]
+    NoFunctions(Format),
+    /// A search by counterexamples tries candidates, which are paths.
+    #[error("the search by counterexamples asks for paths as symbols, not as functions")]
+    DialogueOfFunctions,
     /// A search did not get far enough to make a dialogue.
     #[error("the search did not get to ask twice: give it more time")]
     ShortDialogue,
     /// A search needs no dialogue.
     #[error("the search asks only once, which makes no incremental benchmark")]
     OneCheck,
+    /// There is no strategy to ask about.
+    #[error("there is nothing that the objective asks for, and so no step of it to ask about")]
+    NoSteps,
     /// The time was up before a model was understood.
     #[error("out of time")]
     OutOfTime,

@@ -38,7 +38,7 @@ pub use detour::{Rest, Straight, straightened, time_for};
 pub use emit::{EmitConfig, Emitted, Status, Track, emit, strategy_of_model};
 pub use evidence::Evidence;
 pub use fact::{Because, Error, Fallen, Fault, Note, Reason, Unsupported, Worth, Wrong};
-pub use hyperplan_encode::{Error as EncodeError, Limits, Pruning};
+pub use hyperplan_encode::{Error as EncodeError, Limits, Paths, Pruning};
 pub use lint::{Budget, Lints, Uninspected, lint, lint_systems};
 pub use minimize::{Least, MinimizeError, Narrowed, ProblemOf, SHARE, minimize, narrowed};
 pub use prove::{Proved, Unproved, prove};

@@ -114,6 +114,14 @@ pub enum Error {
         /// The system.
         system: String,
     },
+    /// Functions of time are for states that are written by variable.
+    #[error(
+        "paths are functions where states are written by variable, as bitvec, int or real, not as {states}"
+    )]
+    NoFunctions {
+        /// How states are written.
+        states: &'static str,
+    },
     /// A system is about integers in a way that reals cannot express.
     #[error("{what}, which reals cannot express")]
     NotReal {

@@ -1,11 +1,14 @@
 //! States written by variable (`--states bitvec`, `int` and `real`): nothing is excluded ahead, whatever cannot matter
 //! is left to the solver.
 
+mod observation;
 mod path;
 mod real;
 mod step;
+mod symbols;
 
 use crate::names::{Copies, Names};
+use crate::paths::Paths;
 use crate::value::{Leaves, Val, is, same};
 use crate::writing::{Bound, Env, PathIx, Writer, Writing, all_of};
 use hyperplan_problem::{ActionId, Leaf, Mode, Node, Objective, PathId, PathLeaf, State, System, Trace};
@@ -13,17 +16,19 @@ use hyperplan_relevance::Error;
 use hyperplan_relevance::{Goal, Instance, Known, Move, Numbering, Relevant, Start, Task, cases, generalize};
 use hyperplan_smt::{Features, Model, Script, Term, Terms};
 use hyperplan_space::{Commands, Graph, LIVE, Letter, MAX_COMMANDS, StateIx, code, holds_in};
-pub(crate) use path::Numbers;
 use path::{Builder, VariablePath, stuck_state};
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
 use step::{InState, enabled, halted, is_told};
+pub(crate) use symbols::Numbers;
+use symbols::Symbols;
 use typed_index_collections::TiVec;
 
 /// States written by variable.
 pub(crate) struct ByVariable<'a> {
     task: Task<'a>,
     numbers: Numbers,
+    paths: Paths,
     /// The states of each path's system, where they were enumerated.
     graphs: TiVec<PathId, Option<Arc<Graph>>>,
     rules: TiVec<PathId, Arc<Rules>>,
@@ -65,7 +70,26 @@ impl<'a> ByVariable<'a> {
             }
             rules.push(own);
         }
-        Ok(ByVariable { task, numbers, graphs, rules })
+        Ok(ByVariable { task, numbers, paths: Paths::Symbols, graphs, rules })
+    }
+
+    /// The same with other things standing for what paths do.
+    pub(crate) fn with_paths(self, paths: Paths) -> Self {
+        ByVariable { paths, ..self }
+    }
+
+    /// What a path that the solver chooses is made from, for each choice of bound variables.
+    fn symbols(&self, path: PathId, terms: &mut Terms, of: &[Term]) -> Symbols {
+        match self.paths {
+            Paths::Symbols => Symbols::Declared,
+            paths => {
+                let names = Names::new(&self.task, path, 0);
+                let builder = self.builder(path, &names);
+                let time = self.numbers.sort_of_time(&self.features(), self.task.horizon(path));
+                let observed = (paths == Paths::Policies).then(|| builder.observed_sorts(terms));
+                Symbols::Functions { time, of: of.to_vec(), observed }
+            }
+        }
     }
 
     fn builder<'b>(&'b self, path: PathId, names: &'b Names<'b>) -> Builder<'b> {
@@ -267,13 +291,24 @@ impl VariableQuery<'_, '_> {
 impl Writing for VariableQuery<'_, '_> {
     fn declare(&mut self, script: &mut Script, path: PathId, _: &Goal) -> Result<PathIx, Error> {
         let names = self.copies.next(&self.writer.task, path);
-        Ok(self.paths.push_and_get_key(self.writer.builder(path, &names).declare(script)))
+        let symbols = self.writer.symbols(path, &mut script.terms, &[]);
+        Ok(self.paths.push_and_get_key(self.writer.builder(path, &names).declare(script, &symbols)))
     }
 
     fn bind(&mut self, terms: &mut Terms, path: PathId, _: &Goal) -> Result<Bound, Error> {
         let names = self.copies.next(&self.writer.task, path);
-        let (path, variables, guard) = self.writer.builder(path, &names).bind(terms);
+        let (path, variables, guard) = self.writer.builder(path, &names).bind(terms, &Symbols::Bound);
         Ok(Bound { path: self.paths.push_and_get_key(path), variables, guard })
+    }
+
+    fn depend(&mut self, terms: &mut Terms, path: PathId, of: &[Term]) -> Option<(PathIx, Term)> {
+        if self.writer.paths == Paths::Symbols {
+            return None;
+        }
+        let names = self.copies.next(&self.writer.task, path);
+        let symbols = self.writer.symbols(path, terms, of);
+        let (path, _, guard) = self.writer.builder(path, &names).bind(terms, &symbols);
+        Some((self.paths.push_and_get_key(path), guard))
     }
 
     fn fix(&mut self, terms: &mut Terms, path: PathId, known: &Known) -> Option<PathIx> {

@@ -2,6 +2,7 @@
 //! of values for what an update leaves open.
 
 use super::step::{InState, after, clip, enabled, enabled_with, within};
+use super::symbols::{Numbers, Symbols};
 use crate::names::Names;
 use crate::value::{Val, choose, equal, known, member_of, same, translate, width};
 use crate::writing::at;
@@ -11,47 +12,6 @@ use hyperplan_smt::{self as smt, Model, Script, Sort, Term, Terms};
 use hyperplan_space::{Commands, bounds};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
-
-/// What numbers are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Numbers {
-    /// Bit-vectors (`--states bitvec`).
-    Bits,
-    /// Integers, and reals where a variable is one (`--states int`).
-    Integers,
-    /// Reals (`--states real`).
-    Reals,
-}
-
-impl Numbers {
-    /// The sort of a variable.
-    pub(super) fn sort(self, ty: &Type) -> Sort {
-        match (self, ty, bounds(ty)) {
-            (_, Type::Bool, _) => Sort::Bool,
-            (Numbers::Bits, _, Some((lo, hi))) => Sort::BitVec(width(lo, hi)),
-            (Numbers::Reals, ..) | (_, Type::Real, _) => Sort::Real,
-            _ => Sort::Int,
-        }
-    }
-
-    /// The sort of the symbols that say which command is taken, where there is a choice.
-    pub(super) fn sort_of_choice(self, commands: &Commands) -> Option<Sort> {
-        let count = commands.all.len();
-        let sort = match self {
-            Numbers::Bits => Sort::BitVec(width(0, count as i64 - 1)),
-            Numbers::Integers | Numbers::Reals => Sort::Bool,
-        };
-        (count > 1).then_some(sort)
-    }
-
-    /// Whether an update may leave a value of that type between two ends open, for the solver to find it.
-    pub(super) fn leaves_open(self, ty: &Type) -> bool {
-        match self {
-            Numbers::Bits | Numbers::Integers => true,
-            Numbers::Reals => *ty == Type::Real,
-        }
-    }
-}
 
 /// The terms of a path: `states[t]` its variables at time t, `steps[t]` what leads from there to t + 1.
 #[derive(Clone, Debug)]
@@ -101,21 +61,22 @@ impl Builder<'_> {
     }
 
     /// A path that the solver chooses.
-    pub(crate) fn declare(&self, script: &mut Script) -> VariablePath {
+    pub(super) fn declare(&self, script: &mut Script, symbols: &Symbols) -> VariablePath {
         script.section(
             format!("path.{}", self.names.path),
             format!("path {}: where it starts", self.names.path),
         );
-        let first = self.variables(&mut script.terms, 0, false);
+        let first = self.variables(&mut script.terms, 0, symbols);
         let start = self.initial(&mut script.terms, &first);
         script.assert(start);
         let mut path = self.starting(Arc::new(first));
         for time in 0..self.horizon {
             self.names.begin_step(script, time as usize + 1);
             let here = path.states[time as usize].clone();
-            let step = self.choice(&mut script.terms, time + 1, false);
+            let choices = self.of_step(&mut script.terms, symbols, &here);
+            let step = self.choice(&mut script.terms, time + 1, &choices);
             // The inputs of a step are the new values themselves.
-            let there = self.variables(&mut script.terms, time + 1, false);
+            let there = self.variables(&mut script.terms, time + 1, symbols);
             for &var in &self.commands.inputs {
                 let range = self.input_in_range(&mut script.terms, var, &there);
                 script.assert(range);
@@ -138,19 +99,21 @@ impl Builder<'_> {
         path
     }
 
-    /// A path whose initial state and moves are bound variables and whose other states are defined by them.
-    pub(crate) fn bind(&self, terms: &mut Terms) -> (VariablePath, Vec<Term>, Term) {
-        let first = self.variables(terms, 0, true);
+    /// A path whose initial state and moves are such terms, all of which are given too, and whose other states are defined
+    /// by them.
+    pub(super) fn bind(&self, terms: &mut Terms, symbols: &Symbols) -> (VariablePath, Vec<Term>, Term) {
+        let first = self.variables(terms, 0, symbols);
         let mut bound: Vec<Term> = first.iter().filter_map(symbol_of).collect();
         let mut guards = vec![self.initial(terms, &first)];
         let mut path = self.starting(Arc::new(first));
         for time in 0..self.horizon {
             let here = path.states[time as usize].clone();
-            let step = self.choice(terms, time + 1, true);
+            let choices = self.of_step(terms, symbols, &here);
+            let step = self.choice(terms, time + 1, &choices);
             bound.extend(&step.symbols);
             let mut inputs = here.to_vec();
             for &var in &self.commands.inputs {
-                let input = self.variable(terms, var, time + 1, true);
+                let input = self.variable(terms, var, time + 1, symbols);
                 bound.extend(symbol_of(&input));
                 inputs[usize::from(var)] = input;
                 guards.push(self.input_in_range(terms, var, &inputs));
@@ -226,15 +189,15 @@ impl Builder<'_> {
     }
 
     /// A symbol for each state variable.
-    fn variables(&self, terms: &mut Terms, time: u32, bound: bool) -> Vec<Val> {
-        self.system().vars.keys().map(|var| self.variable(terms, var, time, bound)).collect()
+    pub(super) fn variables(&self, terms: &mut Terms, time: u32, symbols: &Symbols) -> Vec<Val> {
+        self.system().vars.keys().map(|var| self.variable(terms, var, time, symbols)).collect()
     }
 
-    fn variable(&self, terms: &mut Terms, var: VarId, time: u32, bound: bool) -> Val {
+    fn variable(&self, terms: &mut Terms, var: VarId, time: u32, symbols: &Symbols) -> Val {
         let var = &self.system().vars[var];
         let stem = terms.stem(&format!("{}.{}", self.names.path, var.name));
         let sort = self.numbers.sort(&var.ty);
-        let term = symbol(terms, stem, time, sort, bound);
+        let term = symbols.at(terms, stem, time, sort);
         match (sort, bounds(&var.ty)) {
             (Sort::Bool, _) => Val::Bool(term),
             (Sort::BitVec(_), Some((lo, hi))) => Val::Bits { term, lo, hi },
@@ -257,11 +220,11 @@ impl Builder<'_> {
     }
 
     /// The choice of a command.
-    fn choice(&self, terms: &mut Terms, time: u32, bound: bool) -> Step {
+    fn choice(&self, terms: &mut Terms, time: u32, symbols: &Symbols) -> Step {
         let (commands, symbols) = match (self.commands.all.len(), self.numbers) {
             (0 | 1, _) => (vec![Term::TRUE; self.commands.all.len()], Vec::new()),
-            (_, Numbers::Integers | Numbers::Reals) => self.first_true(terms, time, bound),
-            (_, Numbers::Bits) => self.numbered(terms, time, bound),
+            (_, Numbers::Integers | Numbers::Reals) => self.first_true(terms, time, symbols),
+            (_, Numbers::Bits) => self.numbered(terms, time, symbols),
         };
         let mut actions: Vec<(ActionId, Vec<Term>)> = Vec::new();
         for (command, &term) in self.commands.all.iter().zip(&commands) {
@@ -275,11 +238,11 @@ impl Builder<'_> {
     }
 
     /// A bit-vector that holds the number of the command.
-    fn numbered(&self, terms: &mut Terms, time: u32, bound: bool) -> (Vec<Term>, Vec<Term>) {
+    fn numbered(&self, terms: &mut Terms, time: u32, symbols: &Symbols) -> (Vec<Term>, Vec<Term>) {
         let count = self.commands.all.len() as i64;
         let width = width(0, count - 1);
-        let stem = terms.stem(&format!("{}.move", self.names.path));
-        let number = symbol(terms, stem, time, Sort::BitVec(width), bound);
+        let stem = terms.stem(&format!("{}.{}", self.names.path, symbols.word()));
+        let number = symbols.at(terms, stem, time, Sort::BitVec(width));
         let is = |at: i64| {
             let this = terms.bv(i128::from(at), width);
             terms.eq(number, this)
@@ -288,18 +251,18 @@ impl Builder<'_> {
     }
 
     /// A Boolean for each command but the last; the first true one is taken, the last where none is.
-    fn first_true(&self, terms: &mut Terms, time: u32, bound: bool) -> (Vec<Term>, Vec<Term>) {
-        let (mut commands, mut symbols) = (Vec::new(), Vec::new());
+    fn first_true(&self, terms: &mut Terms, time: u32, symbols: &Symbols) -> (Vec<Term>, Vec<Term>) {
+        let (mut commands, mut made) = (Vec::new(), Vec::new());
         let mut none = Term::TRUE;
         for at in 1..self.commands.all.len() {
-            let stem = terms.stem(&format!("{}.move{at}", self.names.path));
-            let this = symbol(terms, stem, time, Sort::Bool, bound);
+            let stem = terms.stem(&format!("{}.{}{at}", self.names.path, symbols.word()));
+            let this = symbols.at(terms, stem, time, Sort::Bool);
             commands.push(terms.and2(none, this));
             none = terms.and2(none, !this);
-            symbols.push(this);
+            made.push(this);
         }
         commands.push(none);
-        (commands, symbols)
+        (commands, made)
     }
 
     /// The state after the chosen command. Where none is chosen the path is none, and any state will do.
@@ -361,11 +324,6 @@ fn possible(terms: &mut Terms, commands: &[Term], enabled: &[Term]) -> Term {
 /// The values of a known state.
 fn constants(terms: &mut Terms, row: &[Value]) -> Vec<Val> {
     row.iter().map(|&value| known(terms, value)).collect()
-}
-
-fn symbol(terms: &mut Terms, stem: smt::Stem, time: u32, sort: Sort, bound: bool) -> Term {
-    let time = Some(time);
-    if bound { terms.bound_symbol(stem, time, sort) } else { terms.symbol(stem, time, sort) }
 }
 
 /// Whether a symbol's value is one of the variable's type.
@@ -481,7 +439,7 @@ fn value_of(ty: &Type, value: smt::Value) -> Option<Value> {
 /// Whether no command can be taken in some state in range: then there may be dead ends.
 pub(crate) fn stuck_state(script: &mut Script, builder: &Builder<'_>) {
     script.section("stuck", "a state without transitions");
-    let state = builder.variables(&mut script.terms, 0, false);
+    let state = builder.variables(&mut script.terms, 0, &Symbols::Declared);
     for (value, var) in state.iter().zip(&builder.system().vars) {
         let range = in_range(&mut script.terms, value, &var.ty);
         script.assert(range);

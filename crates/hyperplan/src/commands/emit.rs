@@ -10,7 +10,7 @@ use crate::load::{self, Consts, Loaded};
 use crate::output::Output;
 use crate::proof::Made;
 use hyperplan_outlet::one_line;
-use hyperplan_plan::{EmitConfig, Emitted, Limits, Pruning, Quantifiers, States, Status, emit};
+use hyperplan_plan::{EmitConfig, Emitted, Limits, Paths, Pruning, Quantifiers, States, Status, emit};
 use hyperplan_problem::{Objective, Problem, Type, display};
 use hyperplan_solver::{Deadline, Format};
 use std::path::{Path, PathBuf};
@@ -45,9 +45,9 @@ pub(crate) fn run(args: &args::Emit, file: &Path, out: &mut Output) -> Result {
         }
         let common = EmitConfig { remarks: remarks(&loaded, &consts), ..common.clone() };
         for objective in objectives {
-            for (quantifiers, states, pruning) in encodings(args) {
+            for (quantifiers, states, paths, pruning) in encodings(args) {
                 let limits = Limits { pruning, ..common.limits };
-                let config = EmitConfig { quantifiers, states, limits, ..common.clone() };
+                let config = EmitConfig { quantifiers, states, paths, limits, ..common.clone() };
                 let mut emitted = match emit(&loaded.problem, objective, &config) {
                     Ok(emitted) => emitted,
                     Err(error) => {
@@ -136,12 +136,15 @@ pub(super) fn common(args: &args::Emit, date: &str, out: &Output) -> Result<Emit
 }
 
 /// The ways of writing that were asked for.
-fn encodings(args: &args::Emit) -> impl Iterator<Item = (Quantifiers, Option<States>, Pruning)> {
+fn encodings(args: &args::Emit) -> impl Iterator<Item = (Quantifiers, Option<States>, Paths, Pruning)> {
     let states = move |quantifiers| args.states.iter().map(move |&states| (quantifiers, states));
     let written = args.quantifiers.iter().copied().flat_map(states);
-    written.flat_map(|(quantifiers, states)| {
+    let written = written.flat_map(|(quantifiers, states)| {
+        args.paths.iter().map(move |&paths| (quantifiers, states, config::paths(paths)))
+    });
+    written.flat_map(|(quantifiers, states, paths)| {
         let pruned = config::pruning(args, Pruning::Full).into_iter();
-        pruned.map(move |pruning| (quantifiers, states, pruning))
+        pruned.map(move |pruning| (quantifiers, states, paths, pruning))
     })
 }
 
@@ -193,6 +196,9 @@ impl Name<'_> {
         }
         if self.args.quantifiers.len() > 1 {
             name += &format!("-{}", config.quantifiers);
+        }
+        if self.args.paths.len() > 1 {
+            name += &format!("-{}", config.paths);
         }
         if self.args.pruning.len() > 1 {
             name += &format!("-{}", config::pruning_name(config.limits.pruning));

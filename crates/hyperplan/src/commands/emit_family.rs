@@ -12,7 +12,7 @@ use crate::store::Store;
 use case::One;
 use clap::ValueEnum as _;
 use hyperplan_family::{Case, Family, Head, Layout, Manifest, Record};
-use hyperplan_plan::{EmitConfig, Pruning, Quantifiers, States};
+use hyperplan_plan::{EmitConfig, Paths, Pruning, Quantifiers, States};
 use hyperplan_solver::Deadline;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::Path;
@@ -84,6 +84,7 @@ struct Work<'a> {
     date: String,
     states: Vec<Option<States>>,
     quantifiers: Vec<Quantifiers>,
+    paths: Vec<Paths>,
     pruning: Vec<Pruning>,
     /// How benchmarks are emitted, but for that.
     common: EmitConfig,
@@ -127,6 +128,7 @@ impl<'a> Work<'a> {
         let common = emit::common(args, &date, out)?;
         // What cannot matter is left in: a solver has to find that out, which makes the harder benchmarks.
         let pruning = once(&config::pruning(args, Pruning::Light));
+        let paths = once(&args.paths.iter().copied().map(config::paths).collect::<Vec<_>>());
         let deadline = common.deadline.clone();
         let certify = args.certify;
         Ok(Work {
@@ -136,6 +138,7 @@ impl<'a> Work<'a> {
             date,
             states,
             quantifiers,
+            paths,
             pruning,
             common,
             certify,

@@ -3,7 +3,7 @@
 use super::{EmitConfig, Track};
 use crate::config::Quantifiers;
 use crate::fact::Note;
-use hyperplan_encode::{Encoder, States};
+use hyperplan_encode::{Encoder, Paths, States};
 use hyperplan_problem::{Map, Mode, Objective, System, display};
 use hyperplan_smt::Features;
 use std::fmt::Write as _;
@@ -44,7 +44,16 @@ pub(super) fn source(
         .collect();
     line(&format!("Horizons: {}.", horizons.join(", ")));
     line(&format!("States: {}.", states(encoder.states)));
+    if let Some(paths) = paths(config.paths) {
+        line(&format!("Paths: {paths}."));
+    }
     line(&format!("Quantifiers: {quantifiers}."));
+    if config.track == Track::Incremental && config.quantifiers == Quantifiers::Keep {
+        line(
+            "Checks: all of it; then of each step whether it can be another one, once those before it are as one of the \
+             answers to the first check has them.",
+        );
+    }
     if let Some(asked) = track(config.track) {
         line(&format!(
             "Track: {asked}; competitions add the commands for that to single queries by themselves."
@@ -89,6 +98,20 @@ fn states(states: States) -> &'static str {
         States::Int => "a number for each time and variable",
         States::Enum => "a value of a datatype for each time",
         States::Real => "a real for each time and variable",
+    }
+}
+
+/// What paths are, where they are not symbols.
+fn paths(paths: Paths) -> Option<&'static str> {
+    match paths {
+        Paths::Symbols => None,
+        Paths::Functions => {
+            Some("functions of time; those after a universal path also of all that such paths before them do")
+        }
+        Paths::Policies => Some(
+            "functions of time, and moves of what is observed then; those after a universal path also of all that such \
+             paths before them do",
+        ),
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod about;
 mod dialect;
+mod forced;
 mod model;
 mod tape;
 
@@ -13,7 +14,7 @@ use crate::oracle::{Oracle, Stop, solver_for};
 use crate::prepare::{decided, is_existential};
 use crate::solve::solve;
 use dialect::Dialect;
-use hyperplan_encode::{Encoder, Goal, Limits, Narrowing, Pruning, States};
+use hyperplan_encode::{Encoder, Goal, Limits, Narrowing, Paths, Pruning, States};
 use hyperplan_problem::{Mode, Objective, PathId, Problem, Quantifier};
 use hyperplan_smt::{Ask, Features, Header, Script, WriteOptions, write_header, write_script};
 use hyperplan_solver::{Deadline, Format, Propositional, Spec};
@@ -29,7 +30,7 @@ pub enum Track {
     /// One query.
     #[default]
     Single,
-    /// The dialogue of the search by counterexamples.
+    /// The dialogue of the search by counterexamples; with quantifiers kept, which steps of a strategy are forced.
     Incremental,
     /// One query that asks for a model.
     Model,
@@ -48,6 +49,8 @@ pub struct EmitConfig {
     pub quantifiers: Quantifiers,
     /// How states are written; without, hyperplan chooses.
     pub states: Option<States>,
+    /// What stands for what paths do.
+    pub paths: Paths,
     /// The track.
     pub track: Track,
     /// The `:status`; without, it is found out by solving.
@@ -75,6 +78,7 @@ impl EmitConfig {
             format: None,
             quantifiers: Quantifiers::Auto,
             states: None,
+            paths: Paths::Symbols,
             track: Track::Single,
             status: None,
             date: date.into(),
@@ -110,7 +114,7 @@ pub struct Emitted {
     pub format: Option<Format>,
     /// The logic; empty where it is not written in SMT-LIB.
     pub logic: String,
-    /// The expected answer; of a dialogue, to its last check.
+    /// The expected answer; of a dialogue, whether there is what the objective asks for.
     pub status: Status,
     /// How quantifiers are written.
     pub quantifiers: Quantifiers,
@@ -182,8 +186,8 @@ pub fn emit(problem: &Problem, objective: &Objective, config: &EmitConfig) -> Re
         (pruning, _) => pruning,
     };
     let limits = Limits { pruning, ..config.limits };
-    let emitted =
-        settled(problem, objective, config.states, limits, &stop, |encoder| build(encoder, config, &dialect));
+    let how = (config.states, config.paths);
+    let emitted = settled(problem, objective, how, limits, &stop, |encoder| build(encoder, config, &dialect));
     emitted.map_err(|error| match error {
         Error::Encode(hyperplan_encode::Error::Interrupted)
         | Error::Solver(hyperplan_solver::Error::Interrupted) => Error::Late(config.deadline.reason()),
@@ -195,18 +199,29 @@ pub fn emit(problem: &Problem, objective: &Objective, config: &EmitConfig) -> Re
 fn settled<T>(
     problem: &Problem,
     objective: &Objective,
-    wish: Option<States>,
+    (wish, paths): (Option<States>, Paths),
     limits: Limits,
     stop: hyperplan_encode::Stop<'_>,
     with: impl FnOnce(&Encoder<'_>) -> Result<T, Error>,
 ) -> Result<T, Error> {
-    let encoder = Encoder::new(problem, objective, wish, limits, stop)?;
+    let wish = wish.or_else(|| by_variable(problem, objective, paths));
+    let encoder = Encoder::new(problem, objective, wish, limits, stop)?.with_paths(paths)?;
     match empty(&encoder)? {
         None => with(&encoder),
         Some(quantifier) => {
             let decided = decided(objective, quantifier);
-            with(&Encoder::new(problem, &decided, wish, limits, stop)?)
+            with(&Encoder::new(problem, &decided, wish, limits, stop)?.with_paths(paths)?)
         }
+    }
+}
+
+/// How states are written where paths are functions and nothing was wished.
+fn by_variable(problem: &Problem, objective: &Objective, paths: Paths) -> Option<States> {
+    let finite = objective.paths.iter().all(|path| problem.systems[path.system].is_finite());
+    match paths {
+        Paths::Symbols => None,
+        Paths::Functions | Paths::Policies if finite => Some(States::Bitvec),
+        Paths::Functions | Paths::Policies => Some(States::Int),
     }
 }
 
@@ -233,22 +248,14 @@ fn build(encoder: &Encoder<'_>, config: &EmitConfig, dialect: &Dialect) -> Resul
     let exists = is_existential(objective);
     let mut changes = Vec::new();
     let format = config.format;
+    if config.paths != Paths::Symbols {
+        has_functions(config)?;
+    }
     if let Some(format) = format {
         has_bits(encoder, config, format)?;
     }
     let quantifiers = quantifiers(config, blocks.len(), dialect, &mut changes)?;
-    let (body, found) = match quantifiers {
-        Quantifiers::Cegis => {
-            let (tape, found) = dialogue(encoder, config, &blocks, exists, &mut notes)?;
-            (Body::Dialogue(tape), found)
-        }
-        Quantifiers::Keep if blocks.len() > 1 => {
-            (Body::Query(direct::keep(encoder, &blocks, exists)?.into_script()), None)
-        }
-        _ => {
-            (Body::Query(direct::expand(encoder, &blocks, exists, Narrowing::default())?.into_script()), None)
-        }
-    };
+    let (body, found) = body(encoder, config, &blocks, quantifiers, &mut notes)?;
     let status = match (config.status, found) {
         (Some(status), _) => status,
         (None, Some(found)) => found,
@@ -259,7 +266,9 @@ fn build(encoder: &Encoder<'_>, config: &EmitConfig, dialect: &Dialect) -> Resul
     }
     let ask = asked(config.track, status)?;
     let (features, mut symbols, mut assertions) = match &body {
-        Body::Query(script) => (Features::of(script), script.symbols().len(), script.len()),
+        Body::Query(script) => {
+            (Features::of(script), script.symbols().len() + script.functions().len(), script.len())
+        }
         Body::Dialogue(tape) => (tape.features(), tape.symbols, tape.assertions),
         Body::Bits(_) => (Features::default(), 0, 0),
     };
@@ -305,6 +314,33 @@ fn build(encoder: &Encoder<'_>, config: &EmitConfig, dialect: &Dialect) -> Resul
     })
 }
 
+/// What is asked, and the answer where that was found out on the way.
+fn body(
+    encoder: &Encoder<'_>,
+    config: &EmitConfig,
+    blocks: &[Vec<PathId>],
+    quantifiers: Quantifiers,
+    notes: &mut Vec<Note>,
+) -> Result<(Body, Option<Status>), Error> {
+    let exists = is_existential(encoder.objective);
+    Ok(match quantifiers {
+        Quantifiers::Cegis => {
+            let (tape, found) = dialogue(encoder, config, blocks, exists, notes)?;
+            (Body::Dialogue(tape), found)
+        }
+        Quantifiers::Keep if config.track == Track::Incremental => {
+            let (tape, found) = forced::dialogue(encoder, config, blocks, exists, notes)?;
+            (Body::Dialogue(tape), found)
+        }
+        Quantifiers::Keep if blocks.len() > 1 => {
+            (Body::Query(direct::keep(encoder, blocks, exists)?.into_script()), None)
+        }
+        _ => {
+            (Body::Query(direct::expand(encoder, blocks, exists, Narrowing::default())?.into_script()), None)
+        }
+    })
+}
+
 /// Refuses what a format of bits does not have.
 fn has_bits(encoder: &Encoder<'_>, config: &EmitConfig, format: Format) -> Result<(), Unsupported> {
     if config.track != Track::Single || config.quantifiers == Quantifiers::Cegis {
@@ -316,6 +352,19 @@ fn has_bits(encoder: &Encoder<'_>, config: &EmitConfig, format: Format) -> Resul
         return Err(Unsupported::NoBits { system, states: encoder.states, format });
     }
     Ok(())
+}
+
+/// Refuses functions where there is none to take them.
+fn has_functions(config: &EmitConfig) -> Result<(), Unsupported> {
+    if let Some(format) = config.format {
+        return Err(Unsupported::NoFunctions(format));
+    }
+    let search = match config.quantifiers {
+        Quantifiers::Cegis => true,
+        Quantifiers::Auto => config.track == Track::Incremental,
+        Quantifiers::Keep | Quantifiers::Expand | Quantifiers::Explicit => false,
+    };
+    if search { Err(Unsupported::DialogueOfFunctions) } else { Ok(()) }
 }
 
 /// How quantifiers are written, and whether that fits the track.
@@ -330,6 +379,12 @@ fn quantifiers(
         (_, Quantifiers::Explicit) => Err(Unsupported::NothingToWrite.into()),
         (Track::Incremental, Quantifiers::Auto | Quantifiers::Cegis)
         | (Track::Single, Quantifiers::Cegis) => Ok(Quantifiers::Cegis),
+        (Track::Incremental, Quantifiers::Keep) => {
+            if blocks > 1 {
+                dialect.demand_quantifiers(blocks)?;
+            }
+            Ok(Quantifiers::Keep)
+        }
         (Track::Incremental, one) => Err(Unsupported::SingleQuery(one).into()),
         (Track::Model | Track::UnsatCore, Quantifiers::Cegis) => Err(Unsupported::Dialogue.into()),
         (_, Quantifiers::Expand) => Ok(Quantifiers::Expand),

@@ -12,8 +12,8 @@ use hyperplan_family::{
     About, Case, Dropped, Entry, Horizon, Layout, Map, Objective, Record, body_of, sha256,
 };
 use hyperplan_plan::{
-    self as plan, Config, EmitConfig, Fault, Limits, MinimizeError, Pruning, Quantifiers, States, Status,
-    Track, Verdict, emit, minimize, solve,
+    self as plan, Config, EmitConfig, Fault, Limits, MinimizeError, Paths, Pruning, Quantifiers, States,
+    Status, Track, Verdict, emit, minimize, solve,
 };
 use hyperplan_problem::{NoFiles, Overrides, Problem, read};
 use hyperplan_solver::{Deadline, Spec};
@@ -36,6 +36,7 @@ pub(super) struct One<'a> {
 struct Encoding {
     states: Option<States>,
     quantifiers: Quantifiers,
+    paths: Paths,
     pruning: Pruning,
 }
 
@@ -147,20 +148,29 @@ impl One<'_> {
             let (states, quantifiers) =
                 (config::states_name(encoding.states), encoding.quantifiers.to_string());
             let pruning = config::pruning_name(encoding.pruning).to_owned();
-            let about = About { instance, case: self.case, horizon, steps, states, quantifiers, pruning };
+            let paths = encoding.paths.to_string();
+            let about =
+                About { instance, case: self.case, horizon, steps, states, quantifiers, paths, pruning };
             self.benchmark(&problem, &file, (encoding, status, certificate.as_mut()), about)?;
         }
         Ok(true)
     }
 
     fn encodings(&self) -> impl Iterator<Item = Encoding> {
-        let Work { states, quantifiers, pruning, .. } = self.work;
+        let Work { states, quantifiers, paths, pruning, .. } = self.work;
         // Without a second block there is nothing to keep or to expand.
         let quantifiers = if self.case.objective.is_single() { &quantifiers[..1] } else { &quantifiers[..] };
-        states.iter().flat_map(move |&states| {
-            quantifiers.iter().flat_map(move |&quantifiers| {
-                pruning.iter().map(move |&pruning| Encoding { states, quantifiers, pruning })
-            })
+        let written = states.iter().flat_map(move |&states| {
+            quantifiers
+                .iter()
+                .flat_map(move |&quantifiers| paths.iter().map(move |&paths| (states, quantifiers, paths)))
+        });
+        // Paths are functions where states are written by variable, which is one of several ways here.
+        let fits = |&(states, _, paths): &(Option<States>, _, _)| {
+            paths == Paths::Symbols || !states.is_some_and(States::is_enumerated)
+        };
+        written.filter(fits).flat_map(move |(states, quantifiers, paths)| {
+            pruning.iter().map(move |&pruning| Encoding { states, quantifiers, paths, pruning })
         })
     }
 
@@ -231,6 +241,7 @@ impl One<'_> {
         let config = EmitConfig {
             quantifiers: encoding.quantifiers,
             states: encoding.states,
+            paths: encoding.paths,
             limits: Limits { pruning: encoding.pruning, ..self.work.common.limits },
             status: Some(status),
             remarks,
@@ -283,7 +294,10 @@ enum Found {
 
 impl Encoding {
     fn instance(self, name: &str) -> String {
-        let name = format!("{name}-{}-{}", config::states_name(self.states), self.quantifiers);
+        let mut name = format!("{name}-{}-{}", config::states_name(self.states), self.quantifiers);
+        if self.paths != Paths::Symbols {
+            name += &format!("-{}", self.paths);
+        }
         match self.pruning {
             // What families have unless something else is asked for.
             Pruning::Light => name,
