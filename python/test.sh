@@ -33,7 +33,8 @@ ls -sh "$work/dist" >&2
 
 say "tests on $(python3 --version)"
 python3 -m venv "$work/new"
-install "$work/new/bin/pip" "$work"/dist/hyperplan-*.whl numpy networkx matplotlib pytest mypy nbmake ipykernel
+install "$work/new/bin/pip" "$work"/dist/hyperplan-*.whl numpy networkx matplotlib pytest mypy nbmake ipykernel \
+  unified-planning==1.3.0
 # Not where the sources are: what is imported is what was installed.
 cp -r tests "$work/tests"
 (cd "$work" && new/bin/python -m pytest -q -p no:cacheprovider tests)

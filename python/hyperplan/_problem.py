@@ -118,8 +118,8 @@ class Problem:
         return self._native.text()
 
     def save(self, folder: str | os.PathLike[str], name: str = "problem") -> FilePath:
-        """Writes a problem that was built in code into a folder, with the files that belong to it, for the command. Where
-        it is."""
+        """Writes the problem into a folder, with the files that it names, for the command. Files of other tools are written
+        as what they mean. Where it is."""
         return FilePath(self._native.save(folder, name))
 
     def solve(
@@ -283,9 +283,7 @@ def load(
 ) -> Problem:
     """Reads a problem file; or models and formulas of other tools, with the number of steps and the semantics with which these
     are read."""
-    if semantics is not None and bound is None:
-        raise ValueError("semantics are for a bound: they say what holds beyond it")
-    if more or bound is not None or dialect is not None:
+    if more or any(said is not None for said in (bound, semantics, dialect)):
         return Problem(_native.Problem.load_foreign([path, *more], bound, semantics, dialect))
     return Problem(_native.Problem.load(path), file=FilePath(path))
 

@@ -332,9 +332,36 @@ def test_comparisons(tmp_path):
     assert [(run["solver"], run["status"]) for run in runs] == [("builtin", "sat"), ("batsat", "sat")]
 
 
-def test_files_of_other_tools(tmp_path):
-    model = tmp_path / "model.smv"
+def chain(folder):
+    """A model and a formula of another tool."""
+    model = folder / "model.smv"
     model.write_text("MODULE main\nVAR b : boolean;\nASSIGN init(b) := FALSE; next(b) := !b;\n")
-    formula = tmp_path / "formula.hq"
+    formula = folder / "formula.hq"
+    formula.write_text("exists A. G(b[A])\n")
+    return model, formula
+
+
+def test_files_of_other_tools(tmp_path):
+    model, formula = chain(tmp_path)
+    assert hyperplan.load(model, formula, bound=3).solve().verdict == "unrealizable"
+    with pytest.raises(hyperplan.ProblemError) as raised:
+        hyperplan.load(model, formula, semantics="pes")
+    assert raised.value.code == "semantics-without-bound"
     formula.write_text("exists A. F(b[A])\n")
     assert hyperplan.load(model, formula, bound=3).solve().verdict == "realizable"
+
+
+def test_what_was_not_built_in_python_is_explained_and_compared(tmp_path):
+    (tmp_path / "maps").mkdir()
+    (tmp_path / "maps" / "room.txt").write_text("..G\n.#.\nS..\n")
+    text = """const T = 3;
+    system Room = grid("maps/room.txt") {}
+    objective o { exists p. start[p] & F[0,T] goal[p] }"""
+    # The folder is given with the text, and is not where the problem is saved.
+    for problem in (Problem.from_text(text, folder=tmp_path), hyperplan.load(*chain(tmp_path), bound=3)):
+        assert problem.explain().facts["verdict"] == "unrealizable"
+        assert [(run["status"], run["solver"]) for run in problem.compare()] == [("unsat", "builtin")]
+    outside = tmp_path / "maps" / "room.txt"
+    problem = Problem.from_text(text.replace("maps/room.txt", str(outside)), folder=tmp_path)
+    with pytest.raises(OSError, match="not within its folder"):
+        problem.explain()

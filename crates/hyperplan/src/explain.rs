@@ -148,7 +148,7 @@ fn unsupported(what: &Unsupported) -> String {
 pub(crate) fn advise(diagnostics: &mut [Diagnostic]) {
     for diagnostic in diagnostics {
         let help = match diagnostic.code {
-            "unbounded-operator" => "say it with `--bound K`",
+            "semantics-without-bound" | "unbounded-operator" => "say it with `--bound K`",
             "other-precedence" => {
                 "this is read as it does; parentheses make it plain, and `--dialect` names another"
             }

@@ -13,7 +13,7 @@ use hyperplan_import::{Input, Options as Reading};
 use hyperplan_outlet::one_line;
 use hyperplan_problem::{self as typed, Lowered, Overrides, Value};
 use hyperplan_syntax::{JsonDiagnostic, SourceMap};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -164,20 +164,27 @@ impl Problem {
         Error::NoObjective { name: name.map(str::to_owned), known }
     }
 
-    /// Writes the text into a folder as `NAME.hp`, with the files that were made for it in code beside it, so that the
-    /// command can be run on it. Constants are as in the text. Where it is.
+    /// Writes the problem into a folder as `NAME.hp`, with the files that it names beside it, so that the command can be run
+    /// on it. Constants are as they were read. Files of other tools are written as what they mean. Where it is.
     ///
     /// # Errors
-    /// When something cannot be written, or there is no text.
+    /// When something cannot be written, or a file is not within the folder that it is named in.
     pub fn save(&self, folder: impl AsRef<Path>, name: &str) -> Result<PathBuf, Error> {
-        let path = folder.as_ref().join(format!("{name}.hp"));
-        let Source::Text { text, files, .. } = &*self.source else {
-            let why = "files of other tools are what they are".to_owned();
-            return Err(Error::Write { path, why });
+        let folder = folder.as_ref();
+        let path = folder.join(format!("{name}.hp"));
+        let (text, files) = self.source.whole();
+        let outside = |name: &String| {
+            Path::new(name).components().any(|part| !matches!(part, Component::Normal(_) | Component::CurDir))
         };
-        let beside = files.memory.iter().map(|(name, bytes)| (folder.as_ref().join(name), bytes.as_slice()));
+        if let Some(name) = files.keys().find(|name| outside(name)) {
+            let why = format!("the problem names `{}`, which is not within its folder", one_line(name));
+            return Err(Error::Write { path, why });
+        }
+        let beside = files.iter().map(|(name, bytes)| (folder.join(name), bytes.as_slice()));
         for (path, bytes) in beside.chain([(path.clone(), text.as_bytes())]) {
-            hyperplan_outlet::write(&path, |to| to.write_all(bytes))
+            path.parent()
+                .map_or(Ok(()), std::fs::create_dir_all)
+                .and_then(|()| hyperplan_outlet::write(&path, |to| to.write_all(bytes)))
                 .map_err(|error| Error::Write { path: path.clone(), why: reason(&error) })?;
         }
         Ok(path)

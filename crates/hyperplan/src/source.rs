@@ -1,10 +1,11 @@
 //! Where a problem comes from: a text with the files that it names, or files of other tools.
 
 use crate::disk::Beside;
-use crate::foreign::Foreign;
+use crate::foreign::{self, Foreign};
 use hyperplan_problem::lower::uses;
 use hyperplan_problem::{Loader, Lowered, Overrides, lower, read};
 use hyperplan_syntax::{Diagnostic, SourceMap, ast, parse};
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -22,6 +23,20 @@ impl Loader for Files {
             (None, Some(folder)) => Beside(folder.clone()).load(path),
             (None, None) => Err("a problem without a folder reads no files".to_owned()),
         }
+    }
+}
+
+/// The same, which keeps what is read.
+struct Kept<'a> {
+    files: &'a Files,
+    read: RefCell<BTreeMap<String, Vec<u8>>>,
+}
+
+impl Loader for Kept<'_> {
+    fn load(&self, path: &str) -> Result<Vec<u8>, String> {
+        let bytes = self.files.load(path)?;
+        self.read.borrow_mut().insert(path.to_owned(), bytes.clone());
+        Ok(bytes)
     }
 }
 
@@ -64,6 +79,22 @@ impl Source {
         let mut sources = SourceMap::new();
         let source = sources.add(name.as_str(), text.as_str());
         Some(Parsed { file: parse(source, text).0, sources, files })
+    }
+
+    /// It as a text of its own, with the files that this names: files of other tools are what they became.
+    pub(crate) fn whole(&self) -> (String, BTreeMap<String, Vec<u8>>) {
+        match self {
+            Source::Text { name, text, files } => {
+                let kept = Kept { files, read: RefCell::default() };
+                // Which files it names is known once they were read.
+                let _ = read(&mut SourceMap::new(), name, text, &kept, &Overrides::none());
+                (text.clone(), kept.read.into_inner())
+            }
+            Source::Foreign(foreign) => {
+                let (_, _, imported) = foreign.read(&Overrides::none());
+                (foreign::text(&imported), BTreeMap::new())
+            }
+        }
     }
 
     /// The folder in which files are that it names.

@@ -4,7 +4,8 @@
 use hyperplan::answer::{ReasonCode, Scalar, Verdict};
 use hyperplan::draw::Kind;
 use hyperplan::{
-    Cancel, Cell, Error, Graph, Grid, Objective, Options, Outcome, Problem, Solvers, System, Verification,
+    Cancel, Cell, Error, Graph, Grid, Objective, Options, Outcome, Problem, Reading, Solvers, System,
+    Verification,
 };
 use std::collections::BTreeSet;
 use std::thread;
@@ -251,6 +252,46 @@ fn what_was_built_can_be_saved_and_read_again() {
     let strategy = outcome.strategy().expect("it has one");
     let page = shown.draw(strategy, Kind::Html).expect("it can be drawn");
     assert!(page.starts_with(b"<!"));
+}
+
+/// A text with a folder, and files of other tools: what is saved means the same without either.
+#[test]
+fn what_was_read_can_be_saved() {
+    let (from, to) = (tempfile::tempdir().expect("a place"), tempfile::tempdir().expect("a place"));
+    let write = |name: &str, text: &str| {
+        let path = from.path().join(name);
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("it can be made");
+        std::fs::write(&path, text).expect("it can be written");
+        path
+    };
+    write("maps/room.txt", "..G\n.#.\nS..\n");
+    let model = write("m.smv", "MODULE main\nVAR b : boolean;\nASSIGN init(b) := FALSE; next(b) := !b;\n");
+    let formula = write("f.hq", "exists A. F b[A]\n");
+    let map = |name: &str| {
+        let system = format!("system Room = grid(\"{name}\") {{}}\n");
+        let text = system + "const T = 9;\nobjective o { exists p. start[p] & F[0,T] goal[p] }\n";
+        Problem::builder().text(text).folder(from.path()).build().expect("it has no errors")
+    };
+    let outside = write("outside.txt", "S.G\n").display().to_string();
+    let reading = Reading { bound: Some(3), ..Reading::default() };
+    let foreign = Problem::load_foreign(&[model, formula], reading).expect("it has no errors");
+    for (name, problem) in [("map", map("maps/room.txt")), ("foreign", foreign)] {
+        let file = problem.save(to.path(), name).expect("it can be written");
+        let read = Problem::load(&file).expect("it has no errors");
+        assert_eq!(format!("{:?}", read.constants()), format!("{:?}", problem.constants()));
+        let actions = [&problem, &read].map(|problem| {
+            let objective = problem.only_objective().expect("there is one");
+            let outcome = objective.solve(&Options::new()).expect("it is decided");
+            assert_eq!(outcome.answer.verdict, Verdict::Realizable, "{name}");
+            outcome.paths()[0].actions.clone()
+        });
+        assert_eq!(actions[0], actions[1], "{name}");
+    }
+    let refused = map(&outside).save(to.path(), "absolute").expect_err("it lies elsewhere");
+    assert_eq!(refused.code(), "cannot-write");
+    let own = from.path().file_name().expect("it has a name").to_string_lossy().into_owned();
+    let up = map(&format!("../{own}/outside.txt"));
+    assert_eq!(up.save(to.path(), "up").expect_err("it lies elsewhere").code(), "cannot-write");
 }
 
 #[test]

@@ -110,7 +110,7 @@ pub struct Input {
 pub struct Options {
     /// `within K`: formulas whose operators have no bounds need it.
     pub bound: Option<u32>,
-    /// `semantics S`.
+    /// `semantics S`, of a bound: without one they are refused.
     pub semantics: Option<String>,
     /// The language of formulas; without it, that whose signs they have.
     pub dialect: Option<Dialect>,
@@ -301,6 +301,12 @@ fn objective(
         quantifiers.push(Quantifier { forall: *forall, path: ident, system });
     }
     if options.bound.is_none() {
+        if let Some(semantics) = &options.semantics {
+            let message =
+                format!("semantics {semantics} are for paths of so many steps, and of how many is not said");
+            let help = "say how many steps paths have, or leave the semantics out";
+            return lower::wrong_with("semantics-without-bound", whole, message, help);
+        }
         bounded(&formula.body)?;
     }
     lower.paths = paths;
@@ -312,8 +318,7 @@ fn objective(
         error
     })?;
     let within = options.bound.map(|bound| Expr { kind: ExprKind::Number(bound.to_string()), span: whole });
-    let semantics = options.semantics.clone().filter(|_| within.is_some());
-    let semantics = semantics.map(|name| Ident { name, span: whole });
+    let semantics = options.semantics.clone().map(|name| Ident { name, span: whole });
     let body =
         ObjectiveBody::Formula(Formula { defines: Vec::new(), quantifiers, body, minimize: Vec::new() });
     let name = Ident { name, span: formula.quantifiers[0].1.span };

@@ -247,6 +247,37 @@ fn comments_of_formulas_say_what_is_known() {
     assert_eq!(about("exists A. F a[A]", Some(Known::Unrealizable), None).0, Some("unrealizable".to_owned()));
 }
 
+/// They say what holds beyond the bound, so without one they are refused, whatever the model and the formula.
+#[test]
+fn semantics_are_for_a_bound() {
+    let models = [("m.smv", "MODULE main VAR a : boolean;"), ("m.aag", "aag 1 1 0 1 0\n2\n2\ni0 a\n")];
+    let formulas = [
+        "exists A. a[A]",
+        "exists A. F[0,3] a[A]",
+        "forall A. exists B. X (a[A] <-> a[B])",
+        "exists A. F a[A]",
+    ];
+    for ((model, text), formula) in
+        models.into_iter().flat_map(|model| formulas.map(|formula| (model, formula)))
+    {
+        for (semantics, bound) in
+            ["pes", "opt", "hpes", "hopt"].into_iter().flat_map(|s| [(s, None), (s, Some(4))])
+        {
+            let input = |name: &str, text: &str| Input { name: name.to_owned(), text: text.to_owned() };
+            let inputs = [input(model, text), input("f.hq", formula)];
+            let options = Options { bound, semantics: Some(semantics.to_owned()), ..Options::default() };
+            let mut sources = SourceMap::new();
+            let imported = import(&inputs, &options, &mut sources);
+            let codes: Vec<&str> =
+                imported.diagnostics.iter().filter(|d| d.is_error()).map(|d| d.code).collect();
+            let expected = if bound.is_none() { vec!["semantics-without-bound"] } else { Vec::new() };
+            assert_eq!(codes, expected, "{model} {formula} {semantics} {bound:?}");
+            let said = print(&imported.file, "").contains(&format!("within 4 semantics {semantics}"));
+            assert_eq!(said, bound.is_some(), "{model} {formula}");
+        }
+    }
+}
+
 /// Whatever is done to a good file, it is read or refused.
 #[test]
 fn damaged_files_do_no_harm() {

@@ -32,7 +32,7 @@ pub(super) fn lint(problem: &Problem, objective: &Objective) -> Vec<Diagnostic> 
                     }
                 }
             }
-            Node::Until(_, _, a) if start[id] == Some(true) && formula.finally(id).is_some() => {
+            Node::Until(..) if start[id] == Some(true) && formula.finally(id).is_some() => {
                 found.push(always(formula, id));
             }
             node if start[id].is_some() && is_read_as_one(formula, id, node) => {
