@@ -279,7 +279,9 @@ fn the_closest_candidate_loses_to_what_is_said() {
         for candidate in config.watch.candidates() {
             let Some(without) = wins(&problem, &typed, (&candidate, &[])) else { continue };
             let about = format!("seed {seed}\n{problem}\n{candidate:?}");
-            let Some(Closest { strategy, spared }) = closest(&typed, objective, std::slice::from_ref(&candidate)) else {
+            let Some(Closest { strategy, spared }) =
+                closest(&typed, objective, std::slice::from_ref(&candidate))
+            else {
                 assert!(!without, "it wins, and nothing is said: {about}");
                 silent += 1;
                 continue;
