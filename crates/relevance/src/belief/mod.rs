@@ -7,7 +7,8 @@
 //! nothing more can be asked for. A chance that becomes `false` loses.
 //!
 //! Two searches are made of beliefs. The first keeps only the most promising at each time ([`beam`]), at first very few,
-//! which finds a strategy soon where there are many. Before it keeps more the other player is given a turn: if it wins by
+//! which finds a strategy soon where there are many. For that, when a path can matter where is told by bounds, which do not
+//! depend on the horizon ([`presence`]); layers, which do, are explored afterwards. Before it keeps more the other player is given a turn: if it wins by
 //! answering step by step, the leading paths lose ([`response`]). They lose as well if they would without deadlines, seeing
 //! what the other player does ([`untimed`]); for how long a chance lasts at least is known from then on. The second is depth
 //! first, with what was learnt from failing: for a node, the chances by which each of its moves failed, traced back, are a
@@ -15,7 +16,7 @@
 //! conflict-directed backjumping with learning (Dechter), the constraint being that no chance be missed.
 //!
 //! Soundness. Chances are dropped where the goal's rest is `true`, where the other player's path is none (it cannot go on as
-//! long as the mode demands), and where its own [`Layers`] say that it can do no harm. What the goal asks of the leading paths
+//! long as the mode demands), and where its own [`Layers`], or its bound, say that it can do no harm. What the goal asks of the leading paths
 //! alone is followed beside the belief. So a run that is found is a strategy; and that none is found means that there is none,
 //! as every run of the leading paths is looked at that no nogood excludes.
 

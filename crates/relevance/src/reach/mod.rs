@@ -24,7 +24,7 @@
 
 //!
 //! `question` says what is asked, `atoms` what is known of the formula's atoms, `product` joins the paths with what is left
-//! of the goal; `bound` measures it without time, and `explore` walks it time by time.
+//! of the goal; `bound` measures it without time, `explore` walks it time by time, and `dive` finds one run.
 
 mod atoms;
 mod bound;
