@@ -287,7 +287,7 @@ mod tests {
     }
 
     /// Where or how runs are done and judged, which changes nothing of what they are. Every other option is part of what a plan says.
-    const ELSEWHERE: [&str; 16] = [
+    const ELSEWHERE: [&str; 17] = [
         "certified",
         "jobs",
         "pin",
@@ -298,6 +298,7 @@ mod tests {
         "shard",
         "log",
         "merge",
+        "limit",
         "echo",
         "engine",
         "tasks",
