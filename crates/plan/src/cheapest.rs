@@ -9,7 +9,7 @@
 use crate::config::{Config, Outcome, Quantifiers, Verdict};
 use crate::fact::{Error, Reason};
 use crate::minimize::{Spent, Steps};
-use crate::solve::search_or_race;
+use crate::race::search_or_race;
 use hyperplan_encode::{self as encode, Among, Encoder, Goal};
 use hyperplan_problem::{Mode, Objective, PathId, Problem, Strategy, Target, bounded, extended};
 use hyperplan_solver::Unknown;

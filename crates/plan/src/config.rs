@@ -1,6 +1,6 @@
 //! What is asked for, and what comes out.
 
-use crate::explain::Closest;
+use crate::choice::Closest;
 use crate::fact::{Because, Note, Reason};
 use crate::watch::Watch;
 use hyperplan_encode::{Among, Graphs, Limits};

@@ -12,7 +12,7 @@ use crate::explain::as_long;
 use crate::fact::Note;
 use crate::lint::demand::paths as read_paths;
 use crate::prepare::is_existential;
-use crate::solve::search_or_race;
+use crate::race::search_or_race;
 use hyperplan_problem::{
     Cost, Expr, FormulaId, Interval, Node, Objective, PathId, PathLeaf, Problem, Strategy, System, Target,
     Trace, Type, Value,

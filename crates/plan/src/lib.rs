@@ -9,6 +9,7 @@
 
 mod cegis;
 mod cheapest;
+mod choice;
 mod config;
 mod confirm;
 mod cubes;
@@ -40,8 +41,8 @@ pub use evidence::Evidence;
 pub use fact::{Because, Error, Fallen, Fault, Note, Reason, Unsupported, Worth, Wrong};
 pub use hyperplan_encode::{Error as EncodeError, Limits, Paths, Pruning};
 pub use lint::{Budget, Lints, Uninspected, lint, lint_systems};
-pub use minimize::{Least, MinimizeError, Narrowed, ProblemOf, SHARE, minimize, narrowed};
+pub use minimize::{Least, MinimizeError, Narrowed, ProblemOf, SHARE, narrowed};
 pub use prove::{Proved, Unproved, prove};
 pub use several::{Another, More, Several, Wanted, several};
-pub use solve::solve;
+pub use solve::{minimize, solve};
 pub use watch::{Stage, Standing, Watch};

@@ -19,7 +19,7 @@ use crate::decide::SLACKS;
 use crate::fact::{Error, Reason, Unsupported};
 use crate::lasting::{conjuncts, lasting};
 use crate::prepare::is_existential;
-use crate::solve::{search_or_race, with_closest};
+use crate::race::search_or_race;
 use hyperplan_encode::{self as encode, Encoder, Goal, Narrowing};
 use hyperplan_problem::{FormulaId, Node, Objective, PathId, Problem, Trace};
 use hyperplan_solver::{QuerySize, Unknown};
@@ -74,7 +74,7 @@ pub type ProblemOf<'a, E> = &'a mut dyn FnMut(i64) -> Result<Problem, E>;
 ///
 /// # Errors
 /// Those of the problems, for a value that has to be asked, and those of [`crate::solve()`].
-pub fn minimize<E>(
+pub(crate) fn minimize<E>(
     objective: &str,
     range: RangeInclusive<i64>,
     problem_of: ProblemOf<'_, E>,
@@ -396,10 +396,7 @@ impl<'a, E> Minimizer<'a, E> {
 
     fn conclude(self, solved: Solved, undecided: Option<Reason>) -> Least {
         let Solved { value, problem, outcome } = solved;
-        let mut outcome = self.spent.told(outcome);
-        if let Some(objective) = problem.objective(self.objective) {
-            outcome = with_closest(&problem, objective, outcome, self.config);
-        }
+        let outcome = self.spent.told(outcome);
         Least { value, problem, outcome, proved: self.low, undecided }
     }
 }

@@ -17,9 +17,22 @@ const GRACE: Duration = Duration::from_millis(500);
 /// What came of one search, with the name of its solver.
 type Finish = (usize, Result<Outcome, Error>);
 
+/// Decides an objective with one solver's search, or by a race of several.
+pub(crate) fn search_or_race(
+    problem: &Problem,
+    objective: &Objective,
+    config: &Config,
+) -> Result<Outcome, Error> {
+    if config.rivals.is_empty() {
+        search(problem, objective, config)
+    } else {
+        race(problem, objective, config)
+    }
+}
+
 /// Runs the whole search once with each solver. When one has an answer, the others are cancelled, which ends their
 /// processes; that some failed before does not matter, but is told.
-pub(crate) fn race(problem: &Problem, objective: &Objective, config: &Config) -> Result<Outcome, Error> {
+fn race(problem: &Problem, objective: &Objective, config: &Config) -> Result<Outcome, Error> {
     let deadline = config.deadline.part();
     let question = Arc::new((problem.clone(), objective.clone()));
     let (send, receive) = mpsc::channel();

@@ -1,12 +1,14 @@
 //! The front door: one solver's search, or several that race.
 
+use crate::choice::Closest;
 use crate::config::{Config, Outcome, Verdict, Verified};
-use crate::explain::{Closest, closest};
+use crate::explain::closest;
 use crate::fact::{Error, Note};
-use crate::race::race;
-use crate::search::search;
+use crate::minimize::{self, Least, MinimizeError, ProblemOf};
+use crate::race::search_or_race;
 use hyperplan_problem::{Objective, PathId, Problem};
 use hyperplan_verify::{Budget, holds_for_all_outcomes};
+use std::ops::RangeInclusive;
 
 /// Decides an objective. A strategy (or counterexample) in the outcome has been verified, unless the configuration
 /// says not to.
@@ -23,12 +25,7 @@ const OUTCOMES: Budget = Budget { states: 100_000, entries: 1_000_000, moves: 2_
 
 /// Where nothing was decided, what is known of the candidates that were met. One of them may do, though no solver had the time to
 /// say so.
-pub(crate) fn with_closest(
-    problem: &Problem,
-    objective: &Objective,
-    outcome: Outcome,
-    config: &Config,
-) -> Outcome {
+fn with_closest(problem: &Problem, objective: &Objective, outcome: Outcome, config: &Config) -> Outcome {
     if outcome.verdict != Verdict::Unknown {
         return outcome;
     }
@@ -50,15 +47,19 @@ pub(crate) fn with_closest(
     }
 }
 
-/// As [`solve`], without what is known of candidates.
-pub(crate) fn search_or_race(
-    problem: &Problem,
-    objective: &Objective,
+/// The least value of the range for which the objective of that name is realizable. The deadline is for all values
+/// together. Of an empty range the first value is asked.
+///
+/// # Errors
+/// Those of the problems, for a value that has to be asked, and those of [`solve()`].
+pub fn minimize<E>(
+    objective: &str,
+    range: RangeInclusive<i64>,
+    problem_of: ProblemOf<'_, E>,
     config: &Config,
-) -> Result<Outcome, Error> {
-    if config.rivals.is_empty() {
-        search(problem, objective, config)
-    } else {
-        race(problem, objective, config)
-    }
+) -> Result<Least, MinimizeError<E>> {
+    let least = minimize::minimize(objective, range, problem_of, config)?;
+    let Some(objective) = least.problem.objective(objective) else { return Ok(least) };
+    let outcome = with_closest(&least.problem, objective, least.outcome, config);
+    Ok(Least { outcome, ..least })
 }

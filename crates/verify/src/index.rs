@@ -1,8 +1,12 @@
 //! States by their values.
 
-use crate::graph::StateId;
 use hyperplan_problem::{System, Type, Value};
 use rustc_hash::FxHashMap;
+
+id! {
+    /// A state that was met.
+    StateId, "the budget of states is kept below 2^32"
+}
 
 /// Up to so many combinations of values there is a place for each.
 const PLACES: u64 = 1 << 20;

@@ -2,9 +2,8 @@
 
 use crate::domain::{Domain, domain_by_init};
 use crate::eval::{eval, truth};
-use crate::graph::{Graph, StateId, no_value};
+use crate::graph::{Graph, StateId, integers, no_value};
 use crate::report::Stop;
-use crate::target::integers;
 use hyperplan_problem::{LabelId, Leaf, Type, Value};
 use typed_index_collections::TiVec;
 

@@ -77,7 +77,6 @@ mod scene;
 mod search;
 mod spread;
 mod step;
-mod target;
 #[cfg(test)]
 mod tests;
 mod valuation;

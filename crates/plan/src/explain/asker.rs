@@ -2,7 +2,7 @@
 
 use crate::config::{Config, Outcome, Verdict};
 use crate::fact::{Error, Fault, Reason};
-use crate::solve::search_or_race;
+use crate::race::search_or_race;
 use hyperplan_problem::{Objective, Problem};
 use hyperplan_solver::{Deadline, Unknown};
 use std::time::Duration;

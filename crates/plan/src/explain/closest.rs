@@ -5,20 +5,12 @@
 //! these choices, and loses to some path that makes one, of each and no other.
 
 use super::failure::compares_actions;
-use super::opponent::{Choice, mattering, without};
+use super::opponent::{mattering, without};
+use crate::choice::{Choice, Closest};
 use crate::prepare::is_existential;
 use hyperplan_problem::{Objective, PathId, Problem, Strategy, Trace};
 use hyperplan_verify::{self as verify, Budget, Check, Defeat};
 use std::time::{Duration, Instant};
-
-/// A candidate that loses to few choices only.
-#[derive(Clone, Debug)]
-pub struct Closest {
-    /// Its paths.
-    pub strategy: Strategy,
-    /// The choices of the other player to which it loses, not all that there are; none where it is a strategy.
-    pub spared: Vec<Choice>,
-}
 
 /// More choices than these are nothing that anybody would want to read.
 const MOST: usize = 5;

@@ -15,10 +15,11 @@ mod opponent;
 mod part;
 mod wall;
 
-pub use closest::{Closest, closest};
+pub use crate::choice::{Choice, Closest};
+pub use closest::closest;
 pub use failure::{Difference, Failing, Failure, Judged};
 pub use longer::{Later, Longer, Time, longer};
-pub use opponent::{Choice, Opponents};
+pub use opponent::Opponents;
 pub(crate) use part::as_long;
 pub use wall::Wall;
 

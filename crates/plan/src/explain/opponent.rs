@@ -8,6 +8,7 @@
 use super::asker::{Asker, needed};
 use super::failure::compares_actions;
 use super::part::{at, is_at, now};
+use crate::choice::Choice;
 use crate::config::Verdict;
 use crate::fact::Error;
 use crate::lint::demand::paths as read_paths;
@@ -21,15 +22,6 @@ const CHOICES: usize = 1_000;
 const PARTS: usize = 100;
 /// Choices that a candidate is spared alone, to see whether it wins then.
 const TRIED: usize = 3;
-
-/// What the other player may choose.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Choice {
-    /// That a path begins in a state.
-    Start(PathId, State),
-    /// That a path does in a step, from 0, something else than another path.
-    Replaced(PathId, PathId, usize),
-}
 
 /// Choices of the other player that are enough to defeat every candidate.
 #[derive(Clone, Debug)]

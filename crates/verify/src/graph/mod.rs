@@ -2,18 +2,18 @@
 
 use crate::eval::{eval, truth};
 use crate::index::Index;
+pub(crate) use crate::index::StateId;
 use crate::report::{Error, Stop};
-use crate::target::{Targets, is_wide, may_become};
 use hyperplan_problem::{
     ActionId, Also, Expr, LabelId, Leaf, StepLeaf, System, TransLeaf, Update, Value, VarId,
 };
 use rustc_hash::FxHashMap;
 use typed_index_collections::TiVec;
 
-id! {
-    /// A state that was met.
-    StateId, "the budget of states is kept below 2^32"
-}
+mod target;
+
+pub(crate) use target::integers;
+use target::{Targets, is_wide, may_become};
 
 /// A transition, seen from its source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

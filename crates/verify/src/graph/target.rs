@@ -1,7 +1,7 @@
 //! Where the moves from a state lead: what the updates of clauses and listed transitions allow.
 
+use super::{Graph, StateId, Step, ValueOf, no_value, position};
 use crate::eval::{eval, truth};
-use crate::graph::{Graph, StateId, Step, ValueOf, no_value, position};
 use crate::report::Stop;
 use hyperplan_problem::{ActionId, Leaf, TransLeaf, Type, Update, Value, VarId};
 
