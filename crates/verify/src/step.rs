@@ -88,6 +88,8 @@ impl Search<'_> {
                 value = *known;
                 break;
             }
+            self.count_moves(1)?;
+            self.count_entries(1)?;
             passed.push((time, value));
             time += 1;
             self.place_fixed(time)?;
