@@ -56,7 +56,7 @@ def register(environment: Optional[Environment] = None) -> None:
 class Engine(engines.Engine, OneshotPlannerMixin):  # type: ignore[misc]
     """Finds sequential plans of at most `steps` actions, with any solver of hyperplan."""
 
-    def __init__(self, *, steps: int = _STEPS, solver: str = "builtin", **_options: object) -> None:
+    def __init__(self, *, steps: int = _STEPS, solver: str = "builtin") -> None:
         engines.Engine.__init__(self)
         OneshotPlannerMixin.__init__(self)
         if steps < 0:
@@ -88,6 +88,8 @@ class Engine(engines.Engine, OneshotPlannerMixin):  # type: ignore[misc]
         timeout: Optional[float] = None,
         output_stream: Optional[IO[str]] = None,
     ) -> PlanGenerationResult:
+        # Reading and grounding count, too.
+        end = None if timeout is None else time.monotonic() + timeout
         if heuristic is not None:
             warnings.warn("hyperplan uses no heuristic of others")
         other = problem.kind.features - self.supported_kind().features
@@ -99,16 +101,14 @@ class Engine(engines.Engine, OneshotPlannerMixin):  # type: ignore[misc]
         except ProblemError as error:
             raise unsupported(f"hyperplan cannot take it: {error}") from error
         try:
-            return self._search(task, reading, bool(problem.quality_metrics), timeout, output_stream)
+            return self._search(task, reading, bool(problem.quality_metrics), end, output_stream)
         except HyperplanError as error:
             status = Status.TIMEOUT if error.code == "timeout" else Status.INTERNAL_ERROR
             return self._answer(status, why=str(error))
 
     def _search(
-        self, task: Problem, reading: Reading, shortest: bool, timeout: Optional[float], stream: Optional[IO[str]]
+        self, task: Problem, reading: Reading, shortest: bool, end: Optional[float], stream: Optional[IO[str]]
     ) -> PlanGenerationResult:
-        end = None if timeout is None else time.monotonic() + timeout
-
         def options() -> dict[str, Any]:
             tell = stream and (lambda facts: stream.write(f"{facts['words']}\n"))
             left = None if end is None else max(end - time.monotonic(), _LEAST)
