@@ -69,11 +69,7 @@ pub enum MinimizeError<E> {
 /// The problem for each value of a constant.
 pub type ProblemOf<'a, E> = &'a mut dyn FnMut(i64) -> Result<Problem, E>;
 
-/// The least value of the range for which the objective of that name is realizable. The deadline is for all values
-/// together. Of an empty range the first value is asked.
-///
-/// # Errors
-/// Those of the problems, for a value that has to be asked, and those of [`crate::solve()`].
+/// As [`crate::minimize()`], without what is known of candidates.
 pub(crate) fn minimize<E>(
     objective: &str,
     range: RangeInclusive<i64>,

@@ -55,7 +55,7 @@ fn is_too_wide(system: &System, budget: usize) -> bool {
     let most = everywhere.map(outcomes).max().unwrap_or(0);
     system.absorb.is_false()
         && system.trans.is_true()
-        && most.saturating_mul(most) > budget.saturating_mul(16) as u128
+        && most.saturating_mul(most) > budget.saturating_mul(EDGES) as u128
 }
 
 /// Systems that were enumerated, for objectives over equal ones: the last few. Clones share them.
