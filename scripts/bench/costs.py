@@ -117,4 +117,6 @@ def hottest(context: Context, objective: str, size: int, file: pathlib.Path) -> 
     lines = [line.strip(" -") for line in listed.output.splitlines() if "%" in line]
     if listed.problem or not lines:
         return title + "perf could not be used\n\n"
-    return title + "\n\n```\n" + "\n".join(line[:110] for line in lines[:8]) + "\n```\n\n"
+    if any(" 0x" in line for line in lines):
+        return title + "functions have no names, as the command was built without symbols\n\n"
+    return title + "\n\n" + "\n".join(f"- `{line[:110]}`" for line in lines[:8]) + "\n\n"
